@@ -1,7 +1,7 @@
 //! `eigen`.
 
-use crate::error::{of_command, of_scenario, of_text};
-use crate::scenario::{json, parsed};
+use crate::error::{of_renamed, of_scenario};
+use crate::scenario::{chosen, json, parsed};
 use crate::work::{Options, run};
 use control::Capsize;
 use pyo3::exceptions::PyKeyboardInterrupt;
@@ -10,6 +10,14 @@ use serde::Deserialize;
 use sim_host::commands::eigen::{EigenTask, eigen as analyse};
 use sim_host::eigen::LinearActuator;
 use sim_host::scenario::{Scenario, law};
+
+/// Quantities of the actuator whose argument has another name.
+const NAMES: [(&str, &str); 4] = [
+    ("actuator.delay_s", "actuator_delay_s"),
+    ("actuator.time_constant_s", "actuator_lag_s"),
+    ("actuator.viscous_nm_s_rad", "steer_friction_nm_s_rad"),
+    ("actuator.inertia_kg_m2", "steer_inertia_kg_m2"),
+];
 
 /// Choices of the analysis beside the scenario.
 #[derive(Deserialize)]
@@ -42,14 +50,14 @@ impl Default for Choice {
 #[pyfunction]
 pub(crate) fn eigen(py: Python<'_>, scenario: &str, choice: &str) -> PyResult<String> {
     let scenario = parsed(py, scenario)?;
-    let choice: Choice = serde_json::from_str(choice).map_err(|error| of_text(py, &error))?;
+    let choice: Choice = chosen(py, choice)?;
     let task = task(py, &scenario, choice)?;
     let options = Options { parts: 1, threads: None, progress: None, law: None };
     let (found, interrupted) = run(py, &options, |_| analyse(&task))?;
     if interrupted {
         return Err(PyKeyboardInterrupt::new_err("the analysis was interrupted"));
     }
-    found.map(|found| json(&found.document)).map_err(|error| of_command(py, &error))
+    found.map(|found| json(&found.document)).map_err(|error| of_renamed(py, &error, &NAMES))
 }
 
 fn task(py: Python<'_>, scenario: &Scenario, choice: Choice) -> PyResult<EigenTask> {

@@ -24,18 +24,31 @@ pub(crate) fn of_scenario(py: Python<'_>, error: &ScenarioError) -> PyErr {
 
 /// A text that is no scenario.
 pub(crate) fn of_syntax(py: Python<'_>, error: &SyntaxError) -> PyErr {
-    exception(py, "ScenarioError", (error.to_string(), error.key(), None::<(f64, f64)>))
+    of_choice(py, &error.to_string(), error.key(), None)
 }
 
 /// An error of a command.
 pub(crate) fn of_command(py: Python<'_>, error: &CommandError) -> PyErr {
-    match error {
-        CommandError::Scenario(error) => of_scenario(py, error),
-        CommandError::Choice { name, .. } => {
-            exception(py, "ScenarioError", (error.to_string(), *name, None::<(f64, f64)>))
-        }
-        other => exception(py, "ScenarioError", (other.to_string(),)),
-    }
+    of_renamed(py, error, &[])
+}
+
+/// An error of a command whose keys have other names here: theirs, and ours.
+pub(crate) fn of_renamed(py: Python<'_>, error: &CommandError, names: &[(&str, &str)]) -> PyErr {
+    let ours = |key: String| {
+        let name = names.iter().find(|(theirs, _)| *theirs == key);
+        name.map_or(key, |(_, ours)| (*ours).to_owned())
+    };
+    exception(py, "ScenarioError", (error.to_string(), error.key().map(ours), error.range()))
+}
+
+/// A choice that can't be used: its message, its key, and the range of a number outside its own.
+pub(crate) fn of_choice(
+    py: Python<'_>,
+    message: &str,
+    key: Option<&str>,
+    range: Option<(f64, f64)>,
+) -> PyErr {
+    exception(py, "ScenarioError", (message, key, range))
 }
 
 /// Any other error, as a message.

@@ -1,21 +1,23 @@
 //! `identify`.
 
-use crate::error::{of_scenario, of_text};
-use crate::scenario::{json, parsed};
+use crate::error::{of_choice, of_scenario};
+use crate::scenario::{chosen, json, parsed};
 use crate::work::{Options, run};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use serde::Deserialize;
 use sim_host::bicycle::ForcePoint;
 use sim_host::commands::identify::{Delay, IdentifyChoice, ready};
-use sim_host::commands::identify_text::{drift, select};
+use sim_host::commands::identify_text::{ChoiceTextError, drift, select};
 use sim_host::identify::{Hold, Signal, Stage, symbols};
-use sim_host::range::within;
+use sim_host::range::{RangeError, within_key};
 use sim_host::recording::ReadOptions;
 use sim_host::replay::Map;
-use sim_host::rider::Neuromuscular;
+use sim_host::rider::{MAX_DELAY_S, Neuromuscular};
+use sim_host::rider_record::RecordError;
+use std::error::Error;
 use std::f64::consts::TAU;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Stages of an identification.
 const STAGES: usize = 4;
@@ -62,8 +64,8 @@ pub(crate) fn identify<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, String)> {
     let bicycle = parsed(py, scenario)?.bicycle().map_err(|error| of_scenario(py, &error))?;
-    let choice: Choice = serde_json::from_str(choice).map_err(|error| of_text(py, &error))?;
-    let choice = chosen(choice, IdentifyChoice::new(bicycle)).map_err(|error| of_text(py, &error))?;
+    let choice = chosen_of(chosen(py, choice)?, IdentifyChoice::new(bicycle));
+    let choice = choice.map_err(|(key, message, range)| of_choice(py, &message, Some(key), range))?;
     let options = Options { parts: STAGES, threads, progress, law: None };
     let (found, interrupted) = run(py, &options, |hooks| {
         let begins = |_: Stage| (hooks.finished)();
@@ -72,26 +74,67 @@ pub(crate) fn identify<'py>(
     if interrupted {
         return Err(PyKeyboardInterrupt::new_err("the identification was interrupted"));
     }
-    let found = found.map_err(|error| of_text(py, &format!("{}: {error}", file.display())))?;
+    let found = found.map_err(|error| of_record(py, &file, &*error))?;
     Ok((json(&found.document), found.rider.to_toml()))
 }
 
+/// A choice that can't be used: its key, message and range.
+type Wrong = (&'static str, String, Option<(f64, f64)>);
+
+/// The error of the value of `key`.
+fn wrong<'a>(key: &'static str) -> impl Fn(Box<dyn Error + 'a>) -> Wrong {
+    move |error| (key, format!("{key}: {error}"), None)
+}
+
+/// A number outside its range.
+fn outside(error: RangeError) -> Wrong {
+    (error.key.unwrap_or_default(), error.to_string(), Some(error.bounds()))
+}
+
+/// A number of the neuromuscular dynamics outside its range, a frequency in Hz as it was given.
+fn in_hz(error: RangeError) -> RangeError {
+    let key = Some("neuromuscular");
+    match error.name.strip_suffix("(rad/s)") {
+        Some(start) => {
+            let [value, min, max] = [error.value, error.min, error.max].map(|rad_s| rad_s / TAU);
+            RangeError { name: format!("{start}(Hz)"), key, value, min, max }
+        }
+        None => RangeError { key, ..error },
+    }
+}
+
+/// A text that is no choice of `key`.
+fn unread(key: &'static str) -> impl Fn(ChoiceTextError) -> Wrong {
+    move |error| (key, format!("{key}: {error}"), error.range())
+}
+
 /// The choices as the library has them.
-fn chosen(choice: Choice, default: IdentifyChoice) -> Result<IdentifyChoice, String> {
-    let text = |error: &dyn std::fmt::Display| error.to_string();
+fn chosen_of(choice: Choice, default: IdentifyChoice) -> Result<IdentifyChoice, Wrong> {
     let gain = |name: &String| {
         let place = symbols().iter().position(|symbol| symbol == name);
-        place.ok_or_else(|| format!("gains: `{name}` is none of {}", symbols().join(", ")))
+        let unknown = || wrong("gains")(format!("`{name}` is none of {}", symbols().join(", ")).into());
+        place.ok_or_else(unknown)
     };
     if let Some(delay_s) = choice.delay_s {
-        within("delay_s", delay_s, 0.0, LONGEST_S).map_err(|e| text(&e))?;
+        within_key("delay_s", "delay_s", delay_s, 0.0, LONGEST_S).map_err(outside)?;
+    }
+    for delay_s in &choice.delay_profile_s {
+        within_key("delay_profile_s", "delay_profile_s", *delay_s, 0.0, MAX_DELAY_S).map_err(outside)?;
+    }
+    if let Some(skip_s) = choice.skip_s {
+        within_key("skip_s", "skip_s", skip_s, 0.0, 3600.0).map_err(outside)?;
+    }
+    if let Some((ahead_m, height_m)) = choice.force_at_m {
+        within_key("force_at_m", "force_at_m: ahead", ahead_m, -3.0, 5.0).map_err(outside)?;
+        within_key("force_at_m", "force_at_m: height", height_m, 0.0, 5.0).map_err(outside)?;
     }
     let neuromuscular = choice.neuromuscular.map(|(hz, zeta)| Neuromuscular { omega_rad_s: hz * TAU, zeta });
     if let Some(muscles) = &neuromuscular {
-        muscles.check().map_err(|e| format!("neuromuscular: {e}"))?;
+        muscles.check().map_err(|e| outside(in_hz(e)))?;
     }
+    let map = choice.map.as_deref().map(Map::load).transpose();
     Ok(IdentifyChoice {
-        map: choice.map.as_deref().map(Map::load).transpose().map_err(|e| format!("map: {e}"))?,
+        map: map.map_err(|e| wrong("map")(e.into()))?,
         map_name: choice.map.clone().unwrap_or(default.map_name),
         read: ReadOptions { strict: false, dbc: choice.dbc },
         speed_m_s: choice.speed_m_s,
@@ -103,18 +146,24 @@ fn chosen(choice: Choice, default: IdentifyChoice) -> Result<IdentifyChoice, Str
         neuromuscular: neuromuscular.unwrap_or(default.neuromuscular),
         delay: choice.delay_s.map_or(Delay::Estimate, Delay::Given),
         delays_s: choice.delay_profile_s,
-        drift: choice.drift.as_deref().map_or(Ok(default.drift), drift).map_err(|e| format!("drift: {e}"))?,
+        drift: choice.drift.as_deref().map_or(Ok(default.drift), drift).map_err(unread("drift"))?,
         skip_s: choice.skip_s.unwrap_or(default.skip_s),
         hold: choice.hold.unwrap_or(default.hold),
         filter: choice.filter,
         linear: choice.linear,
-        select: choice
-            .select
-            .as_deref()
-            .map_or(Ok(default.select), select)
-            .map_err(|e| format!("select: {e}"))?,
+        select: choice.select.as_deref().map_or(Ok(default.select), select).map_err(unread("select"))?,
         reduce_until: default.reduce_until.filter(|_| choice.reduce),
         seed: choice.seed,
         bicycle: default.bicycle,
     })
+}
+
+/// An error of a record.
+fn of_record(py: Python<'_>, file: &Path, error: &(dyn Error + Send + Sync + 'static)) -> PyErr {
+    let (key, range) = match error.downcast_ref() {
+        Some(RecordError::Range(error)) => (error.key, Some(error.bounds())),
+        Some(RecordError::NoSpeed) => (Some("speed_m_s"), None),
+        _ => (None, None),
+    };
+    of_choice(py, &format!("{}: {error}", file.display()), key, range)
 }

@@ -1,6 +1,8 @@
 //! Laws that are Python functions.
 
+use crate::error::of_choice;
 use pyo3::prelude::*;
+use pyo3::types::PyFloat;
 use sim_host::ride::OwnLaw;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -40,11 +42,13 @@ impl OwnFunction {
             }
             Python::attach(|py| {
                 let torque_nm = function.bind(py).call1((roll_rate_rad_s, speed_m_s));
-                torque_nm.and_then(|torque_nm| finite(&torque_nm)).unwrap_or_else(|error| {
-                    *raised.first.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-                    raised.any.store(true, Ordering::Relaxed);
-                    0.0
-                })
+                torque_nm.and_then(|value| torque(&value, roll_rate_rad_s, speed_m_s)).unwrap_or_else(
+                    |error| {
+                        *raised.first.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                        raised.any.store(true, Ordering::Relaxed);
+                        0.0
+                    },
+                )
             })
         })
     }
@@ -60,12 +64,22 @@ impl OwnFunction {
     }
 }
 
-/// A torque \[N m\].
-fn finite(value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    let torque_nm: f64 = value.extract()?;
+/// A torque \[N m\] that the function returned for these values.
+fn torque(value: &Bound<'_, PyAny>, roll_rate_rad_s: f64, speed_m_s: f64) -> PyResult<f64> {
+    // A number of numpy that is not a double is asked for its kind: a complex one would lose a part, an array of one would do.
+    let plain = value.is_instance_of::<PyFloat>() || {
+        let kind = value.getattr("dtype").and_then(|dtype| dtype.getattr("kind")?.extract::<String>());
+        let array = value.getattr("ndim").and_then(|ndim| ndim.extract::<usize>()).is_ok_and(|ndim| ndim > 0);
+        !array && !kind.is_ok_and(|kind| kind == "c")
+    };
+    let torque_nm = if plain { value.extract().unwrap_or(f64::NAN) } else { f64::NAN };
     if torque_nm.is_finite() {
         return Ok(torque_nm);
     }
-    let message = format!("the law returned {torque_nm}; a torque in N m must be a finite number");
-    Err(pyo3::exceptions::PyValueError::new_err(message))
+    let returned = value.repr()?;
+    let message = format!(
+        "law: the function returned {returned} at {roll_rate_rad_s} rad/s and {speed_m_s} m/s; a torque in N m is one \
+         finite number"
+    );
+    Err(of_choice(value.py(), &message, Some("law"), None))
 }

@@ -6,6 +6,7 @@ mod basin;
 mod catalogue;
 mod eigen;
 mod error;
+mod flags;
 mod identify;
 mod law;
 mod plane;
@@ -27,6 +28,8 @@ mod _core {
     #[pymodule_export]
     use super::eigen::eigen;
     #[pymodule_export]
+    use super::flags::flags;
+    #[pymodule_export]
     use super::identify::identify;
     #[pymodule_export]
     use super::plane::plane;
@@ -35,7 +38,7 @@ mod _core {
     #[pymodule_export]
     use super::ride::ride;
     #[pymodule_export]
-    use super::scenario::{check, read};
+    use super::scenario::{check, read, unit_of};
     #[pymodule_export]
-    use super::sweep::{axes, sweep_cell, sweep_document, sweep_plan};
+    use super::sweep::{axes, axis_coordinate, sweep_cell, sweep_document, sweep_plan};
 }

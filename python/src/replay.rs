@@ -1,15 +1,21 @@
 //! `replay`.
 
-use crate::error::{of_command, of_text};
-use crate::scenario::json;
+use crate::error::{of_choice, of_renamed};
+use crate::flags;
+use crate::scenario::{chosen, json};
 use crate::work::{Options, run};
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use serde::Deserialize;
+use sim_host::commands::CommandError;
 use sim_host::commands::replay::{Replay, ReplayChoice};
 use sim_host::replay::Resample;
 use sim_host::scenario::Preset;
 use std::path::PathBuf;
+
+/// Options whose argument has another name.
+const NAMES: [(&str, &str); 2] = [("fault", "faults"), ("parameter_file", "parameters")];
 
 /// Choices of a replay.
 #[derive(Deserialize)]
@@ -51,10 +57,14 @@ impl Default for Choice {
     }
 }
 
-/// Replays a recording: the document and the rows of the table as JSON, and the doubts.
+/// A replay: the document and the rows of the table as JSON, `limit_active` and `cause_active` of the rows as one byte per flag,
+/// and the doubts.
+type Replayed<'py> = (String, String, (Bound<'py, PyBytes>, Bound<'py, PyBytes>), Vec<String>);
+
+/// Replays a recording: the document and the rows of the table as JSON, the flags of the rows, and the doubts.
 #[pyfunction]
-pub(crate) fn replay(py: Python<'_>, file: PathBuf, choice: &str) -> PyResult<(String, String, Vec<String>)> {
-    let choice: Choice = serde_json::from_str(choice).map_err(|error| of_text(py, &error))?;
+pub(crate) fn replay<'py>(py: Python<'py>, file: PathBuf, choice: &str) -> PyResult<Replayed<'py>> {
+    let choice: Choice = chosen(py, choice)?;
     let choice = ReplayChoice {
         map: choice.map,
         dbc: choice.dbc,
@@ -71,12 +81,20 @@ pub(crate) fn replay(py: Python<'_>, file: PathBuf, choice: &str) -> PyResult<(S
         every_s: choice.every_s,
         ..ReplayChoice::default()
     };
-    let replay = Replay::new(choice).map_err(|error| of_command(py, &error))?;
+    let replay = Replay::new(choice).map_err(|error| of_renamed(py, &error, &NAMES))?;
     let options = Options { parts: 1, threads: Some(1), progress: None, law: None };
-    let (done, interrupted) = run(py, &options, |_| replay.file(&file))?;
+    let (done, interrupted) = run(py, &options, |hooks| replay.file_until(&file, hooks.stop))?;
     if interrupted {
         return Err(PyKeyboardInterrupt::new_err("the replay was interrupted"));
     }
-    let done = done.map_err(|error| of_text(py, &error))?;
-    Ok((json(&done.document()), json(&done.result.replayed.rows), replay.remarks))
+    let done = done.map_err(|error| match error.downcast_ref::<CommandError>() {
+        Some(error) => of_renamed(py, error, &NAMES),
+        None => of_choice(py, &error.to_string(), None, None),
+    })?;
+    let rows = &done.result.replayed.rows;
+    let active = (
+        flags::limits(py, rows.iter().map(|row| row.limits)),
+        flags::causes(py, rows.iter().map(|row| row.causes)),
+    );
+    Ok((json(&done.document()), json(rows), active, replay.remarks))
 }

@@ -3,13 +3,19 @@
 use crate::error::{of_scenario, of_syntax};
 use crate::law::OwnFunction;
 use pyo3::prelude::*;
+use serde::de::DeserializeOwned;
 use sim_host::commands::Setup;
-use sim_host::scenario::Scenario;
+use sim_host::scenario::{Scenario, choices, unit_of as unit};
 use std::path::PathBuf;
 
 /// A scenario from JSON.
 pub(crate) fn parsed(py: Python<'_>, json: &str) -> PyResult<Scenario> {
     Scenario::from_json(json).map_err(|error| of_syntax(py, &error))
+}
+
+/// Choices beside a scenario, from JSON.
+pub(crate) fn chosen<T: DeserializeOwned>(py: Python<'_>, json: &str) -> PyResult<T> {
+    choices(json).map_err(|error| of_syntax(py, &error))
 }
 
 /// A loaded scenario, steered by `law` if one is given.
@@ -35,6 +41,12 @@ pub(crate) fn read(py: Python<'_>, path: PathBuf) -> PyResult<String> {
 pub(crate) fn check(py: Python<'_>, scenario: &str) -> PyResult<(String, String, Vec<String>, Vec<String>)> {
     let setup = setup(py, scenario, None)?;
     Ok((json(&setup.scenario), json(&setup.config), setup.warnings().collect(), setup.notes))
+}
+
+/// The unit of a number called `name`, from the end of the name; 1 without one.
+#[pyfunction]
+pub(crate) fn unit_of(name: &str) -> &'static str {
+    unit(name).map_or("1", |(_, unit)| unit)
 }
 
 /// A value as JSON.

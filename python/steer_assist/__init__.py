@@ -4,6 +4,8 @@ SI units, angles in radians; roll, steer and torque to the right are positive (a
 dictionary, keyword arguments, or a TOML file; results are xarray Datasets with units and coordinates. docs/python.md.
 """
 
+from importlib.metadata import version as _version
+
 from . import plot
 from ._basin import basin, islands
 from ._bicycle import as_bicycle
@@ -17,6 +19,8 @@ from ._ride import ride
 from ._scenario import check, scenario
 from ._sweep import sweep
 from .errors import ClientError, Interrupted, ScenarioError, ScenarioWarning, UnitsWarning
+
+__version__ = _version("steer_assist")
 
 __all__ = [
     "ClientError",

@@ -10,7 +10,7 @@ import xarray as xr
 
 from . import _core, _law
 from ._check import threads as as_threads
-from ._data import attributes, border, document, numbers, table, variable
+from ._data import attributes, border, numbers, part, table, variable, words
 from ._progress import Progress, reporting
 from ._scenario import text
 from .errors import Interrupted
@@ -67,9 +67,9 @@ def dataset(document_text: str) -> xr.Dataset:
         "height": variable("speed_m_s", numbers(content["height"]["upper"]), "rad s-1", "largest disturbance without a fall"),
         "capped": variable("speed_m_s", [bool(value) for value in content["capped"]], "1", "whether height is a lower bound"),
         **border(content["border"], speeds),
-        "outcome": variable(over, table(scan["outcome"], width, "", "<U9"), "1", "outcome of the ride"),
+        "outcome": words(over, table(scan["outcome"], width, "", "<U9"), "outcome of the ride"),
         "time_to_fall_s": variable(over, table(scan["time_to_fall_s"], width, float("nan"), float), "s", "time to the fall"),
-        "fall": variable(over, table(scan["fall"], width, "", "<U9"), "1", "reason of the fall"),
+        "fall": words(over, table(scan["fall"], width, "", "<U9"), "reason of the fall"),
     }
     coords = {
         "speed_m_s": variable("speed_m_s", speeds, "m s-1", "forward speed"),
@@ -93,5 +93,5 @@ def islands(result: xr.Dataset) -> pd.DataFrame:
     DataFrame
         Columns ``speed_m_s`` [m/s], ``from_rad_s`` and ``to_rad_s`` [rad/s]; one row per island, which has a mirror image.
     """
-    rows = [(row["speed"], row["from"], row["to"]) for row in document(result)["islands"]]
+    rows = [(row["speed"], row["from"], row["to"]) for row in part(result, "islands", "basin")]
     return pd.DataFrame(rows, columns=["speed_m_s", "from_rad_s", "to_rad_s"])

@@ -8,6 +8,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+import xarray as xr
+
 from . import _core
 from .errors import ScenarioError
 
@@ -19,15 +22,26 @@ def as_bicycle(value: Any) -> Any:
 
     Parameters
     ----------
-    value : str, path, mapping or object
+    value : str, path, mapping, Series or object
         Shipped name, ``FILE`` or ``FILE#NAME``; the 26 benchmark parameters (Meijaard et al. 2007, Table 1, with ``g``;
-        SI units, ``lam`` in rad), with or without uncertainties (``uncertainties.ufloat``); or an object of
-        BicycleParameters: ``Bicycle`` or a parameter set.
+        SI units, ``lam`` in rad), with or without uncertainties (``uncertainties.ufloat``), in a mapping or in a pandas Series
+        with their names as index; or an object of BicycleParameters: ``Bicycle`` or a parameter set.
+
+    Notes
+    -----
+    Of uncertain parameters the nominal values and the standard deviations are used. Correlations, as of results of other
+    ``ufloat``, are not: a draw changes every parameter independently of the others.
     """
     if isinstance(value, (str, Path)):
         return str(value)
+    if isinstance(value, (pd.DataFrame, xr.Dataset)):
+        kind = type(value).__name__
+        raise ScenarioError(f"bicycle: a {kind} is no bicycle; one row or column of a DataFrame, a Series with the parameters, is", "bicycle")
     if isinstance(value, Mapping):
         return value if "parameters" in value else from_parameters(value, str(value.get("name", "own")))
+    if isinstance(value, pd.Series):
+        name = value.name if isinstance(value.name, str) else "own"
+        return from_parameters({str(key): one for key, one in value.items()}, name)
     if hasattr(value, "parameters"):
         name = getattr(value, "bicycleName", None) or getattr(value, "name", None) or type(value).__name__
         return from_object(benchmark(value), str(name))
@@ -36,11 +50,12 @@ def as_bicycle(value: Any) -> Any:
 
 def benchmark(value: Any) -> Mapping[str, Any]:
     """The benchmark parameters of an object of BicycleParameters."""
-    parameters = value.parameters
+    parameters: Mapping[str, Any] = value.parameters
     if "Benchmark" in parameters:
-        return parameters["Benchmark"]
+        inner: Mapping[str, Any] = parameters["Benchmark"]
+        return inner
     if "IBxx" not in parameters and hasattr(value, "to_parameterization"):
-        return value.to_parameterization("Meijaard2007").parameters
+        parameters = value.to_parameterization("Meijaard2007").parameters
     return parameters
 
 
@@ -49,7 +64,8 @@ def from_object(values: Mapping[str, Any], name: str) -> dict[str, Any]:
     left out, as those of a file are."""
     pairs = {key: (number(key, value), deviation(key, value)) for key, value in values.items()}
     lines = [f"{key} = {value!r}" + (f"+/-{sd!r}" if sd > 0.0 else "") for key, (value, sd) in pairs.items()]
-    return json.loads(_core.bicycle_of_text(name, "\n".join(lines)))
+    bicycle: dict[str, Any] = json.loads(_core.bicycle_of_text(name, "\n".join(lines)))
+    return bicycle
 
 
 def from_parameters(values: Mapping[str, Any], name: str) -> dict[str, Any]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import os
+import sys
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -50,6 +52,27 @@ def plain(value: Any, key: str = "") -> Any:
     raise ScenarioError(f"{key}: a {type(value).__name__} is no value of a scenario", key)
 
 
+def path(file: Any, key: str) -> str:
+    """The name of a file.
+
+    Raises
+    ------
+    ScenarioError
+        It is something else, such as a table that was already read.
+    """
+    if not isinstance(file, (str, os.PathLike)):
+        raise ScenarioError(f"{key}: a {type(file).__name__} is no file; expected its name", key)
+    return os.fsdecode(file)
+
+
+def warn(message: str, category: type[Warning]) -> None:
+    """A warning at the line outside of this package that called it."""
+    inside, frame, level = os.path.dirname(__file__), sys._getframe(1), 2
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == inside:
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, category, stacklevel=level)
+
+
 def threads(number: int | None) -> int | None:
     """A number of threads.
 
@@ -82,5 +105,5 @@ def doubt_units(value: Any, key: str = "") -> None:
         for end, most, unit in SUSPICIOUS:
             if key.endswith(end) and abs(value) > most:
                 message = f"{key} = {value} {unit} is unusually large; is it in degrees?"
-                warnings.warn(message, UnitsWarning, stacklevel=5)
+                warn(message, UnitsWarning)
                 return

@@ -33,8 +33,9 @@ def compute(cell: str, threads: int) -> str:
 
 def units(client: Any, cells: list[str], threads: int) -> Iterator[str]:
     """The results of cells as the workers finish them; after an interruption the other tasks are cancelled."""
-    from dask.distributed import as_completed
+    from dask import distributed
 
+    as_completed: Any = distributed.as_completed
     # The same cell again is computed again: a function is pure here, but a cached result would hide a broken worker.
     futures = client.map(compute, cells, threads=threads, pure=False)
     try:

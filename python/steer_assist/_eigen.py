@@ -11,7 +11,7 @@ import xarray as xr
 
 from . import _core
 from ._check import plain
-from ._data import attributes, variable
+from ._data import attributes, variable, words
 from ._scenario import doubt, text
 from ._scenario import scenario as as_scenario
 from .errors import ScenarioError
@@ -88,10 +88,10 @@ def dataset(document_text: str) -> xr.Dataset:
     coords: dict[str, Any] = {"speed_m_s": variable("speed_m_s", content["speeds"], "m s-1", "forward speed")}
     modes = {name: parts(values, 2) for name, values in content["modes"].items()}
     if modes:
-        over = ("mode", "speed_m_s", "part")
-        variables["mode_real"] = variable(over, np.stack([m[0] for m in modes.values()]), "s-1", "real part, by mode")
-        variables["mode_imag"] = variable(over, np.stack([m[1] for m in modes.values()]), "s-1", "imaginary part, by mode")
-        coords["mode"] = list(modes)
+        by = ("mode", "speed_m_s", "part")
+        variables["mode_real"] = variable(by, np.stack([m[0] for m in modes.values()]), "s-1", "real part, by mode")
+        variables["mode_imag"] = variable(by, np.stack([m[1] for m in modes.values()]), "s-1", "imaginary part, by mode")
+        coords["mode"] = words("mode", list(modes), "name of the mode")
     return xr.Dataset(variables, coords, attributes(content, document_text, ["v_d", "v_w", "v_c"]))
 
 

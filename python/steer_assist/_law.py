@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
-from ._scenario import doubt, short
+import numpy as np
+
+from ._scenario import doubt, read, short
 from ._scenario import scenario as as_scenario
 from .errors import ScenarioError
 
 #: ``f(roll_rate_rad_s, speed_m_s) -> torque_nm``
 Law = Callable[[float, float], float]
-
-
-def split(law: Any) -> tuple[Any, Law | None]:
-    """The law as data and as a function, of which at most one is given."""
-    if callable(law):
-        return None, law
-    if isinstance(law, Mapping):
-        return {"name": "table", **law}, None
-    if hasattr(law, "to_dict") and hasattr(law, "columns"):
-        return {"name": "table", **{name: law[name].to_numpy() for name in law.columns}}, None
-    return law, None
 
 
 #: Roll rates [rad/s] and speeds [m/s] at which a function is tried.
@@ -40,11 +31,13 @@ def steered(
     ScenarioError
         With ``key`` and ``range``.
     """
-    law, function = split(law)
-    data = as_scenario(scenario, **short({**changes, **({} if law is None else {"law": law})}, table))
+    base = read(scenario)
+    law = base.get("law") if law is None else law
+    function: Law | None = law if callable(law) else None
+    base.pop("law", None)
+    given = {} if law is None or function is not None else {"law": law}
+    data = as_scenario({**base, **given}, **short(changes, table))
     if function is not None:
-        # It replaces the law of a scenario that is used again.
-        data.pop("law", None)
         check(function, mirrored)
     doubt(data)
     return data, function
@@ -72,9 +65,11 @@ def check(law: Law, mirrored: bool) -> None:
 def torque(law: Law, roll_rate_rad_s: float, speed_m_s: float) -> float:
     value = law(roll_rate_rad_s, speed_m_s)
     try:
-        torque_nm = float(value)
+        # An array of one number and a complex number would be converted.
+        torque_nm = math.nan if np.ndim(value) > 0 or np.iscomplexobj(value) else float(value)
     except (TypeError, ValueError):
-        raise ScenarioError(f"law: the function returned {value!r}, not a torque in N m", "law") from None
+        torque_nm = math.nan
     if not math.isfinite(torque_nm):
-        raise ScenarioError(f"law: the function returned {torque_nm} at {roll_rate_rad_s} rad/s and {speed_m_s} m/s", "law")
+        at = f"{roll_rate_rad_s} rad/s and {speed_m_s} m/s"
+        raise ScenarioError(f"law: the function returned {value!r} at {at}; a torque in N m is one finite number", "law")
     return torque_nm

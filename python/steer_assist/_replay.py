@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import warnings
 from pathlib import Path
 from typing import Any
 
@@ -12,13 +11,12 @@ import pandas as pd
 import xarray as xr
 
 from . import _core
-from ._check import plain
-from ._data import attributes, document, numbers, variable
+from ._check import path, plain, warn
+from ._data import active, attributes, numbers, part, variable
+from .errors import ScenarioWarning
 
 #: Units of the rows, by name.
 UNITS = {
-    "mode": "1",
-    "limits": "1",
     "torque": "N m",
     "gain": "N m s rad-1",
     "roll": "rad",
@@ -54,27 +52,26 @@ def replay(recording: str | Path, /, **choices: Any) -> xr.Dataset:
     -------
     Dataset
         The rows of the replay over ``time_s`` [s]: torque [N m], gain, estimated roll [rad], measured values, residuals; NaN where there is none;
-        ``causes`` as bits. Attributes: durations and peaks of the result, ``document``. See :func:`steer_assist.causes`.
+        ``mode``; ``limit_active`` and ``cause_active`` as of :func:`steer_assist.ride`. Attributes: durations and peaks of the result, ``document``. See :func:`steer_assist.causes`.
 
     Raises
     ------
     ScenarioError
         What the recording or the choices lack.
     """
-    document_text, rows_text, remarks = _core.replay(str(recording), json.dumps(plain(choices)))
+    document_text, rows_text, flags, remarks = _core.replay(path(recording, "recording"), json.dumps(plain(choices)))
     for remark in remarks:
-        warnings.warn(remark, stacklevel=2)
+        warn(remark, ScenarioWarning)
     rows = json.loads(rows_text)
     content = json.loads(document_text)
     variables = {
         name: variable("time_s", numbers([row[name] for row in rows]), units, name.replace("_", " "))
         for name, units in UNITS.items()
     }
-    bits = np.array([row["causes"] for row in rows], dtype=np.uint64)
-    variables["causes"] = variable("time_s", bits, "1", "causes that prevent or reduce torque, as bits")
-    coords = {"time_s": variable("time_s", numbers([row["t"] for row in rows]), "s", "time in the recording")}
+    bits, names = active(np.array([row["mode"] for row in rows], dtype=np.int8), *flags)
+    coords = {"time_s": variable("time_s", numbers([row["t"] for row in rows]), "s", "time in the recording"), **names}
     keys = ["file", "periods", "riding_s", "engaged_s", "limp_s", "fault_s", "peak_torque_nm", "rms_torque_nm", "rate_limited"]
-    return xr.Dataset(variables, coords, attributes(content, document_text, keys))
+    return xr.Dataset({**variables, **bits}, coords, attributes(content, document_text, keys))
 
 
 def causes(result: xr.Dataset) -> pd.DataFrame:
@@ -86,4 +83,4 @@ def causes(result: xr.Dataset) -> pd.DataFrame:
         One row per cause: ``number``, ``name``, ``first_s`` [s], ``count``, ``total_s`` [s], ``alarms``.
     """
     columns = ["number", "name", "first_s", "count", "total_s", "alarms"]
-    return pd.DataFrame(document(result)["causes"], columns=columns)
+    return pd.DataFrame(part(result, "causes", "replay"), columns=columns)

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from . import _core, _law
-from ._data import attributes, unit_of, variable
+from ._data import active, attributes, variable
 from ._scenario import text
 from .errors import Interrupted
 
@@ -28,7 +28,6 @@ ABOUT = {
     "torque_nm": "steer torque commanded by the assist, to the right",
     "rider_torque_nm": "steer torque of the rider, to the right",
     "motor_torque_nm": "steer torque of the motor, to the right",
-    "mode": "mode of the controller, by number",
 }
 
 
@@ -49,8 +48,9 @@ def ride(scenario: Any = None, /, *, law: Any = None, **changes: Any) -> xr.Data
     Returns
     -------
     Dataset
-        Variables over ``time_s`` [s], one point per control period: angles [rad], rates [rad/s], speeds [m/s], torques [N m], ``limits``
-        and ``causes`` as bits. Attributes ``outcome`` ("fallen", "recovered", "undecided"), ``time_to_fall_s`` (of a fall),
+        Variables over ``time_s`` [s], one point per control period (T): angles [rad], rates [rad/s], speeds [m/s], torques [N m],
+        ``mode``; ``limit_active`` over ``limit`` (T x L) and ``cause_active`` over ``cause`` (T x C), 1 where active; ``cause_number``.
+        Attributes ``outcome`` ("fallen", "recovered", "undecided"), ``time_to_fall_s`` (of a fall),
         ``effort`` entries such as ``peak_torque_nm``, and ``document``.
 
     Raises
@@ -58,28 +58,25 @@ def ride(scenario: Any = None, /, *, law: Any = None, **changes: Any) -> xr.Data
     ScenarioError
         With ``key`` and ``range``.
     Interrupted
-        After Ctrl-C, at the end of the ride, with the ride in ``result``.
+        After Ctrl-C; a ride has no partial result.
     """
     data, function = _law.steered(scenario, law, changes, "start", mirrored=False)
-    document, columns, interrupted = _core.ride(text(data), function)
-    result = dataset(document, columns)
-    if interrupted:
-        raise Interrupted("interrupted; .result has the ride, which ends first", result)
-    return result
+    ridden = _core.ride(text(data), function)
+    if ridden is None:
+        raise Interrupted("the ride was interrupted")
+    return dataset(*ridden)
 
 
 def dataset(document: str, columns: dict[str, bytes]) -> xr.Dataset:
     """The dataset of a document of ``ride`` and the columns of its record."""
     time = np.frombuffer(columns.pop("time_s"))
-    whole = {"limits": "active limits, as bits", "causes": "causes that prevent or reduce torque, as bits"}
-    bits = {
-        name: variable("time_s", np.frombuffer(columns.pop(name), dtype=np.uint64), "1", about) for name, about in whole.items()
-    }
+    mode = np.frombuffer(columns.pop("mode"), dtype=np.int8)
+    bits, names = active(mode, columns.pop("limit_active"), columns.pop("cause_active"))
     values = {
-        name: variable("time_s", np.frombuffer(column), unit_of(name), ABOUT[name]) for name, column in columns.items()
+        name: variable("time_s", np.frombuffer(column), _core.unit_of(name), ABOUT[name]) for name, column in columns.items()
     }
     content = json.loads(document)
     keys = ["outcome", "time_to_fall_s", "fall"]
     attrs = {**attributes(content, document, keys), **content["effort"]}
-    coords = {"time_s": variable("time_s", time, "s", "time since the disturbance")}
+    coords = {"time_s": variable("time_s", time, "s", "time since the disturbance"), **names}
     return xr.Dataset({**values, **bits}, coords, attrs)

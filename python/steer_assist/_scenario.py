@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import json
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import xarray as xr
 
 from . import _core
 from ._bicycle import as_bicycle
-from ._check import doubt_units, plain
+from ._check import doubt_units, plain, warn
+from ._data import document
 from .errors import ScenarioError, ScenarioWarning
 
 START = {"speed_m_s", "steer_rate_rad_s", "roll_rate_rad_s"}
 SEARCH = {"speeds", "axis", "max_rate", "scan_step", "tolerance", "method", "adaptive_speeds"}
 PLANE = {"speed", "rays", "max_steer_rate", "max_roll_rate", "points", "tolerance", "method"}
+#: What the name of a law that was a Python function begins with.
+FUNCTION = "python:"
 #: Keys that can be given as keyword arguments, without their table.
 SHORT = {"start": START, "search": SEARCH, "plane": PLANE}
 
@@ -41,9 +44,29 @@ def scenario(base: Any = None, /, **changes: Any) -> dict[str, Any]:
     merged = merge(read(base), changes)
     if "bicycle" in merged:
         merged["bicycle"] = as_bicycle(merged["bicycle"])
-    data = plain(merged)
+    if "law" in merged:
+        merged["law"] = as_law(merged["law"])
+    data: dict[str, Any] = plain(merged)
     doubt_units(data)
     return data
+
+
+def as_law(law: Any) -> Any:
+    """A law as data: a name, or a table.
+
+    Raises
+    ------
+    ScenarioError
+        It is a Python function, or the name of one.
+    """
+    if callable(law):
+        raise ScenarioError("law: a Python function is no data; it goes with ride, basin and plane, as law=", "law")
+    if isinstance(law, str) and law.startswith(FUNCTION):
+        name = law.removeprefix(FUNCTION)
+        raise ScenarioError(f"law: it was the Python function `{name}`, which a result does not contain; pass it again as law=", "law")
+    if isinstance(law, pd.DataFrame):
+        return {"name": "table", **{str(name): law[name].to_numpy() for name in law.columns}}
+    return {"name": "table", **law} if isinstance(law, Mapping) else law
 
 
 def short(changes: dict[str, Any], table: str) -> dict[str, Any]:
@@ -58,12 +81,15 @@ def read(base: Any) -> dict[str, Any]:
     if base is None:
         return {}
     if isinstance(base, xr.Dataset):
-        base = json.loads(base.attrs["document"])
+        base = document(base)
+        if "scenario" not in base:
+            raise ScenarioError("a result without a scenario, as of sweep, eigen and replay, is no scenario", "scenario")
     if isinstance(base, Mapping):
         return dict(base["scenario"] if "tool" in base and "scenario" in base else base)
     if isinstance(base, (str, Path)):
-        return json.loads(_core.read(base))
-    raise ScenarioError(f"a {type(base).__name__} is no scenario; expected a dictionary, a file, or a result")
+        content: dict[str, Any] = json.loads(_core.read(base))
+        return content
+    raise ScenarioError(f"a {type(base).__name__} is no scenario; expected a dictionary, a file, or a result", "scenario")
 
 
 def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -83,7 +109,7 @@ def text(data: Mapping[str, Any]) -> str:
 def doubt(data: Mapping[str, Any]) -> None:
     """Warns of what is doubtful in a scenario that is about to be computed, which is loaded for it."""
     for warning in _core.check(text(data))[2]:
-        warnings.warn(warning, ScenarioWarning, stacklevel=4)
+        warn(warning, ScenarioWarning)
 
 
 def check(base: Any = None, /, **changes: Any) -> dict[str, Any]:

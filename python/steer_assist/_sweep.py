@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -12,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from . import _core, _dask
-from ._check import plain
+from ._check import plain, warn
 from ._check import threads as as_threads
 from ._data import attributes, variable
 from ._progress import Progress, Report, reporting
@@ -42,7 +41,8 @@ def sweep(
         What all cells have in common.
     over : mapping of str to sequence
         The axes. A key is that of a scenario (``torque_limit_nm``, ``sensor_delay_s``) or the name of an option (``torque-limit``,
-        ``law``, ``set``); values are numbers in the key's unit or text, None is "none".
+        ``law``, ``set``); values are numbers in the key's unit or text, None is "none". The dimension of an axis is the option's name with
+        underscores (``torque_limit``, ``sensor_delay``), its coordinate numbers in the unit of the key, or text if one of them is no number.
     client : dask.distributed.Client, optional
         Computes one task per cell on the client's workers; a task whose worker dies is computed again. The result has the same bytes as
         without.
@@ -57,7 +57,7 @@ def sweep(
     -------
     Dataset
         Over the axes and ``speed_m_s``: ``height`` [rad/s], ``capped``, ``peak_torque_nm`` [N m] of the ride at the border. Over the axes: ``area``
-        [rad m/s^2], ``mean_height`` [rad/s], ``area_capped``. NaN in unfinished cells. Attributes ``complete``, ``document``.
+        [rad m/s^2], ``mean_height`` [rad/s], ``area_capped``. NaN (false) in unfinished cells. Attributes ``complete``, ``document``.
 
     Raises
     ------
@@ -68,8 +68,8 @@ def sweep(
     Interrupted
         After Ctrl-C, with the finished cells in ``result``.
     """
-    if callable(changes.get("law")):
-        raise ScenarioError("law: the cells of a sweep are data; a function goes with ride, basin and plane", "law")
+    if not isinstance(over, Mapping):
+        raise ScenarioError(f"over: a {type(over).__name__}; expected a dictionary of axes and their values", "over")
     threads = as_threads(threads)
     axes = [axis(key, values) for key, values in over.items()]
     data = as_scenario(scenario, **short(changes, "search"))
@@ -78,7 +78,7 @@ def sweep(
     plan, cells, remarks = _core.sweep_plan(text(data), axes)
     for remark in remarks:
         if remark.startswith("warning: "):
-            warnings.warn(remark.removeprefix("warning: "), ScenarioWarning, stacklevel=2)
+            warn(remark.removeprefix("warning: "), ScenarioWarning)
     units: list[str] = []
     with reporting(progress, "sweep", "cell") as report:
         done = here(cells, threads) if client is None else _dask.units(client, cells, threads or 1)
@@ -117,15 +117,16 @@ def axis(key: str, values: Any) -> str:
     name = names.get(key, key.replace("_", "-") if key not in names.values() else key)
     if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
         raise ScenarioError(f"over[{key!r}] = {values!r}: expected a sequence of values", key)
-    items = [item(name, value, f"{key}[{i}]") for i, value in enumerate(np.asarray(values, dtype=object).tolist())]
+    items = [item(name, value, f"{key}[{i}]") for i, value in enumerate(values)]
     return f"{name}={','.join(items)}"
 
 
 def item(name: str, value: Any, key: str) -> str:
     """A value of an axis as text."""
+    if isinstance(value, (Mapping, list, tuple)) or callable(value) or np.ndim(value) > 0:
+        kind = type(value).__name__
+        raise ScenarioError(f"{key}: a {kind}; the value of an axis is a number or text, a table the name of its file", key)
     value = plain(value, key)
-    if isinstance(value, (list, dict)):
-        raise ScenarioError(f"{key} = {value!r}: the value of an axis is a number or text", key)
     if value is None:
         return "none"
     seconds = name in TIMES and not isinstance(value, str)
@@ -140,6 +141,7 @@ def dataset(document_text: str) -> xr.Dataset:
     shape = [len(one["values"]) for one in axes]
     found = {tuple(cell["values"]): cell for cell in content["cells"]}
     cells = [found.get(values) for values in itertools.product(*(one["values"] for one in axes))]
+
     def per_cell(key: str) -> np.ndarray:
         return np.array([np.nan if cell is None else cell[key] for cell in cells], dtype=float).reshape(shape)
 
@@ -150,24 +152,20 @@ def dataset(document_text: str) -> xr.Dataset:
     over = [*dims, "speed_m_s"]
     variables = {
         "height": variable(over, per_speed(lambda one: one["height"]), "rad s-1", "largest disturbance without a fall"),
-        "capped": variable(over, per_speed(lambda one: one["capped"]), "1", "1 where height is a lower bound"),
+        "capped": variable(over, per_speed(lambda one: one["capped"]) == 1, "1", "whether height is a lower bound"),
         "peak_torque_nm": variable(
             over, per_speed(lambda one: (one["effort"] or {"peak_torque_nm": np.nan})["peak_torque_nm"]), "N m", "at the border"
         ),
         "area": variable(dims, per_cell("area"), "rad m s-2", "area under the heights"),
         "mean_height": variable(dims, per_cell("mean_height"), "rad s-1", "mean height"),
-        "area_capped": variable(dims, per_cell("area_capped"), "1", "1 where area and mean are lower bounds"),
+        "area_capped": variable(dims, per_cell("area_capped") == 1, "1", "whether area and mean are lower bounds"),
     }
-    coords = {dim: coordinate(dim, one["values"]) for dim, one in zip(dims, axes)}
+    coords = {dim: coordinate(dim, one) for dim, one in zip(dims, axes)}
     coords["speed_m_s"] = variable("speed_m_s", speeds, "m s-1", "forward speed")
     return xr.Dataset(variables, coords, attributes(content, document_text, ["complete"]))
 
 
-def coordinate(dim: str, values: list[str]) -> Any:
-    """The values of an axis as numbers, in s if they are times, or as text."""
-    for end, per_unit, units in [("", 1.0, "1"), ("ms", 1e3, "s"), ("s", 1.0, "s")]:
-        try:
-            return variable(dim, [float(value.removesuffix(end)) / per_unit for value in values], units, dim)
-        except ValueError:
-            continue
-    return variable(dim, values, "1", dim)
+def coordinate(dim: str, axis: dict[str, Any]) -> Any:
+    """An axis as numbers in its unit, or as text."""
+    about, units, values = _core.axis_coordinate(json.dumps(axis))
+    return variable(dim, axis["values"] if values is None else values, units, about)

@@ -9,6 +9,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from ._data import require
+from .errors import ScenarioError
+
 __all__ = ["basin", "eigen", "plane", "ride", "sweep"]
 
 
@@ -30,6 +33,7 @@ def basin(result: xr.Dataset, /, *, ax: Axes | None = None, label: str | None = 
     **line
         Properties of the line.
     """
+    require(result, ("speed_m_s", "height", "capped", "rate"), "basin")
     ax = axis_of(ax)
     speeds, height = result.speed_m_s.values, result.height.values
     (drawn,) = ax.plot(speeds, height, label=label, **line)
@@ -47,6 +51,7 @@ def basin(result: xr.Dataset, /, *, ax: Axes | None = None, label: str | None = 
 
 def plane(result: xr.Dataset, /, *, ax: Axes | None = None, **line: Any) -> Axes:
     """The closed border of a basin over steer rate and roll rate."""
+    require(result, ("steer_rate_rad_s", "roll_rate_rad_s"), "plane")
     ax = axis_of(ax)
     ax.plot(result.steer_rate_rad_s, result.roll_rate_rad_s, **line)
     ax.set_xlabel("steer rate [rad/s]")
@@ -56,6 +61,7 @@ def plane(result: xr.Dataset, /, *, ax: Axes | None = None, **line: Any) -> Axes
 
 def ride(result: xr.Dataset, /, *, ax: Axes | None = None, variables: tuple[str, ...] = ("roll_rad", "steer_rad")) -> Axes:
     """Variables of a ride over time, angles in degrees."""
+    require(result, ("time_s", *variables), "ride")
     ax = axis_of(ax)
     for name in variables:
         angle = name.endswith("_rad")
@@ -68,6 +74,7 @@ def ride(result: xr.Dataset, /, *, ax: Axes | None = None, variables: tuple[str,
 
 def eigen(result: xr.Dataset, /, *, ax: Axes | None = None) -> Axes:
     """Real (dots) and imaginary (circles) parts of the eigenvalues over forward speed."""
+    require(result, ("speed_m_s", "real_part", "imag_part"), "eigen")
     ax = axis_of(ax)
     ax.plot(result.speed_m_s, result.real_part, "k.", markersize=3)
     imag = result.imag_part.where(result.imag_part > 0.0)
@@ -79,13 +86,26 @@ def eigen(result: xr.Dataset, /, *, ax: Axes | None = None) -> Axes:
 
 
 def sweep(result: xr.Dataset, /, *, ax: Axes | None = None, measure: str = "area", **options: Any) -> Axes:
-    """A measure of a sweep over its one or two axes."""
-    ax = axis_of(ax)
+    """A measure of a sweep over its one or two axes.
+
+    Raises
+    ------
+    ScenarioError
+        The measure is missing, or has no or more than two axes of more than one value: select one along the others.
+    """
+    require(result, (measure,), "sweep")
     values = result[measure].squeeze()
+    if values.ndim not in (1, 2):
+        over = ", ".join(f"{dim} ({size})" for dim, size in values.sizes.items()) or "a single cell"
+        raise ScenarioError(f"{measure}: a figure has one or two axes, not {over}; select with .sel() or .isel()", "measure")
+    ax = axis_of(ax)
     if values.ndim == 1:
-        ax.plot(values[values.dims[0]], values, "o-", **options)
-        ax.set_xlabel(values.dims[0])
-        ax.set_ylabel(f"{measure} [{values.units}]")
+        (dim,) = values.dims
+        coordinate = values[dim]
+        units = coordinate.attrs.get("units", "1")
+        ax.plot(coordinate, values, "o-", **options)
+        ax.set_xlabel(coordinate.attrs.get("long_name", str(dim)) + ("" if units == "1" else f" [{units}]"))
+        ax.set_ylabel(f"{measure} [{values.attrs.get('units', '1')}]")
     else:
         values.plot(ax=ax, **options)
     return ax

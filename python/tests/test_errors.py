@@ -2,6 +2,7 @@
 
 import pickle
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pandas
@@ -55,7 +56,86 @@ def test_the_range_is_named(changes, key, least, most):
 def test_a_search_out_of_range():
     with pytest.raises(sa.ScenarioError, match="tolerance") as raised:
         sa.basin(tolerance=1e-12)
-    assert raised.value.key == "search" and raised.value.range[0] == 1e-9
+    assert raised.value.key == "search.tolerance" and raised.value.range[0] == 1e-9
+
+
+@pytest.fixture
+def here(repository):
+    """A recorded ride and a record of perturbations."""
+    recording = repository / "data/recordings/g2_steer_encoder_spikes_2mps.csv"
+    return SimpleNamespace(recording=recording, record=repository / "python/notebooks/perturbed_young_5mps.csv")
+
+
+@pytest.mark.parametrize(
+    "use, key, least, most",
+    [
+        (lambda here: sa.basin(speeds=[31.0]), "search.speeds", 0, 30),
+        (lambda here: sa.basin(speeds="0:31:1"), "search.speeds", 0, 30),
+        (lambda here: sa.basin(speeds=[4.0, 3.0]), "search.speeds", None, None),
+        (lambda here: sa.basin(max_rate=-1), "search.max_rate", 0.01, 100),
+        (lambda here: sa.basin(scan_step=0), "search.scan_step", 1e-3, 30),
+        (lambda here: sa.basin(adaptive_speeds=2), "search.adaptive_speeds", 1e-4, 1),
+        (lambda here: sa.basin(axis="yaw"), "search.axis", None, None),
+        (lambda here: sa.basin(uncertain=1), "uncertain", 2, 10000),
+        (lambda here: sa.plane(speed=31), "plane.speed", 0, 30),
+        (lambda here: sa.plane(speed=4, rays=1), "plane.rays", 2, 10000),
+        (lambda here: sa.plane(speed=4, points=0), "plane.points", 1, 10000),
+        (lambda here: sa.plane(speed=4, max_steer_rate=0), "plane.max_steer_rate", 0.01, 100),
+        (lambda here: sa.plane(speed=4, max_roll_rate=-1), "plane.max_roll_rate", 0.01, 100),
+        (lambda here: sa.plane(speed=4, tolerance=1), "plane.tolerance", 1e-9, 1 / 80),
+        (lambda here: sa.ride(time_limit_s=3601, **START), "time_limit_s", 0.001, 3600),
+        (lambda here: sa.ride(recovered_below=2, **START), "recovered_below", 1e-6, 1),
+        (lambda here: sa.ride(fall={"roll_rad": 3.0}, **START), "fall.roll_rad", np.pi / 180, np.pi / 2),
+        (lambda here: sa.ride(sensor_delay_s=2, **START), "sensor_delay_s", 0, 1),
+        (lambda here: sa.ride(rider={"table": "young", "delay_s": 2}, **START), "rider.delay_s", 0, 1),
+        (lambda here: sa.eigen(speeds=[36.0]), "speeds", -30, 30),
+        (lambda here: sa.eigen(law="h", actuator_delay_s=2, speeds=[4.0]), "actuator_delay_s", 0, 1),
+        (lambda here: sa.eigen(law="h", actuator_lag_s=11, speeds=[4.0]), "actuator_lag_s", 0, 10),
+        (lambda here: sa.eigen(law="h", steer_friction_nm_s_rad=-1, speeds=[4.0]), "steer_friction_nm_s_rad", 0, 100),
+        (lambda here: sa.eigen(law="h", steer_inertia_kg_m2=-1, speeds=[4.0]), "steer_inertia_kg_m2", 0, 10),
+        (lambda here: sa.eigen(law="h", rider="young", actuator_delay_s=0.01, speeds=[4.0]), "actuator_delay_s", None, None),
+        (lambda here: sa.eigen(capsize="much"), "capsize", None, None),
+        (lambda here: sa.sweep(over={"torque_limit_nm": [2000.0]}), "torque_limit_nm", np.float32(0.1), 50),
+        (lambda here: sa.sweep(over={"sensor_delay_s": [0.0, 2.0]}), "sensor_delay_s", 0, 1),
+        (lambda here: sa.sweep(over={"rider.delay_s": [2.0]}, rider="young"), "rider.delay_s", 0, 1),
+        (lambda here: sa.sweep(over={"time_limit_s": [3601]}), "time_limit_s", 0.001, 3600),
+        (lambda here: sa.sweep(over={"law": ["hh"]}), "law", None, None),
+        (lambda here: sa.sweep(over={"torque_limit_nm": ["much"]}), "torque_limit_nm", None, None),
+        (lambda here: sa.sweep(over={"torque_limit_nm": [1, 1]}), "torque_limit_nm", None, None),
+        (lambda here: sa.sweep(over={"colour": ["red"]}), "colour", None, None),
+        (lambda here: sa.sweep(over={"law": ["h"]}, tolerance=1e-12), "search.tolerance", 1e-9, 0.25),
+        (lambda here: sa.replay(here.recording, map="extract", every_s=0), "every_s", 1e-6, 3600),
+        (lambda here: sa.replay(here.recording, map="extract", longest_gap_s=-1), "longest_gap_s", 1e-6, 3600),
+        (lambda here: sa.replay(here.recording, map="extract", faults=["gyro:shy"]), "faults", None, None),
+        (lambda here: sa.replay(here.recording, map="extract", set=["limits.colour=1"]), "set", None, None),
+        (lambda here: sa.replay(here.recording, map="extract", preset="best"), "preset", None, None),
+        (lambda here: sa.replay(here.recording, map="extract", law="hh"), "law", None, None),
+        (lambda here: sa.replay(here.recording, map="nomap"), "map", None, None),
+        (lambda here: sa.replay(here.recording, mapp="extract"), "mapp", None, None),
+        (lambda here: sa.identify(here.record, delay_s=30), "delay_s", 0, 0.5),
+        (lambda here: sa.identify(here.record, delay_profile_s=[0.0, 2.0]), "delay_profile_s", 0, 1),
+        (lambda here: sa.identify(here.record, skip_s=-1), "skip_s", 0, 3600),
+        (lambda here: sa.identify(here.record, force_at_m=(9, 1)), "force_at_m", -3, 5),
+        (lambda here: sa.identify(here.record, neuromuscular=(-1, 0.7)), "neuromuscular", 0.1 / (2 * np.pi), 200 / (2 * np.pi)),
+        (lambda here: sa.identify(here.record, gains=["K_nothing"]), "gains", None, None),
+        (lambda here: sa.identify(here.record, select="vaf:101"), "select", 0, 100),
+        (lambda here: sa.identify(here.record, drift="1Hz"), "drift", 1e-4, 0.5),
+        (lambda here: sa.identify(here.record, speed_m_s=99, reduce=False), "speed_m_s", 0.1, 30),
+        (lambda here: sa.identify(here.record, threads=0), "threads", 1, 1024),
+        (lambda here: sa.identify(here.record, fit=["yaw"]), "fit", None, None),
+    ],
+)
+def test_every_rejected_value_has_its_key_and_range(here, use, key, least, most):
+    """Must hold: the exception has the argument's key, and of a number the range in the key's unit."""
+    with pytest.raises(sa.ScenarioError) as raised:
+        use(here)
+    found = raised.value.key
+    assert found is not None and found.split("[")[0] == key
+    if least is None:
+        assert raised.value.range is None
+        return
+    assert raised.value.range is not None and raised.value.range[0] == pytest.approx(least, abs=1e-12)
+    assert most is None or raised.value.range[1] == pytest.approx(most)
 
 
 def test_a_start_is_needed():

@@ -1,6 +1,9 @@
 """Ctrl-C: what is finished is kept. Other threads run meanwhile."""
 
+import os
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -53,6 +56,44 @@ def test_a_function_is_interrupted_too():
     with pytest.raises(sa.Interrupted) as raised:
         sa.basin(law=lambda p, v: 10 * p, speeds=np.linspace(1, 8, 200), progress=interrupted_after(1))
     assert 1 <= int(raised.value.result.height.notnull().sum()) < 200
+
+
+PROGRAM = """
+import signal, steer_assist as sa
+signal.signal(signal.SIGINT, signal.default_int_handler)
+calls = 0
+def law(roll_rate_rad_s, speed_m_s):
+    global calls
+    calls += 1
+    if calls == 50_000:  # Beyond the checks, in the ride.
+        print("rides", flush=True)
+    return 0.0
+try:
+    sa.ride(law=law, bicycle="benchmark", speed_m_s=5.0, time_limit_s=3600, steer_rate_rad_s=0.01)
+except sa.Interrupted as interrupted:
+    print(calls, interrupted.result)
+"""
+
+
+def test_a_long_ride_is_stopped():
+    """Situation: a ride of an hour, whose law is a Python function. Action: the signal of Ctrl-C after 50,000 calls. Must hold: it ends
+    with a KeyboardInterrupt after a small part of the 14,400,000 calls."""
+    with subprocess.Popen([sys.executable, "-c", PROGRAM], stdout=subprocess.PIPE, text=True) as child:
+        assert child.stdout.readline() == "rides\n"
+        child.send_signal(signal.SIGINT)
+        output, _ = child.communicate(timeout=100)
+    calls, result = output.split()
+    assert 50_000 <= int(calls) < 4_000_000 and result == "None"
+
+
+def test_a_long_ride_of_the_flashed_code_is_stopped():
+    """Situation: a ride of an hour. Action: the signal of Ctrl-C soon after its start. Must hold: there is no ride."""
+    presser = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    presser.start()
+    with pytest.raises(sa.Interrupted) as raised:
+        sa.ride(preset="product", bicycle="benchmark", speed_m_s=5.0, time_limit_s=3600, steer_rate_rad_s=0.01)
+    presser.join()
+    assert raised.value.result is None
 
 
 def test_an_error_of_the_progress_function_is_raised():

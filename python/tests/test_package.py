@@ -2,6 +2,10 @@
 
 import ast
 import inspect
+import os
+import subprocess
+import sys
+from importlib.metadata import version
 from importlib.resources import files
 from pathlib import Path
 
@@ -29,6 +33,19 @@ def test_the_package_is_typed_and_described():
     assert (files("steer_assist") / "py.typed").is_file()
     for name in sa.__all__:
         assert (getattr(sa, name).__doc__ or "").strip(), name
+
+
+def test_the_version_is_the_installed_ones():
+    assert sa.__version__ == version("steer_assist") and sa.__version__[0].isdigit()
+
+
+def test_the_types_are_clean(repository):
+    """Must hold: mypy --strict has no remark on the package and its stubs."""
+    pytest.importorskip("mypy", reason="mypy is not installed")
+    package = repository / "python/steer_assist"
+    command = [sys.executable, "-m", "mypy", "--strict", "--config-file", str(repository / "python/pyproject.toml")]
+    done = subprocess.run([*command, "--cache-dir", os.devnull, str(package)], capture_output=True, text=True, cwd=package.parent)
+    assert done.returncode == 0, done.stdout + done.stderr
 
 
 def test_shipped_names():

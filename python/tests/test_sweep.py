@@ -20,9 +20,34 @@ def test_axes_and_units(alone):
     assert alone.height.dims == ("torque_limit", "sensor_delay", "speed_m_s")
     assert alone.sizes == {"torque_limit": 3, "sensor_delay": 2, "speed_m_s": 2}
     assert alone.sensor_delay.values.tolist() == [0.0, 0.02] and alone.sensor_delay.units == "s"
+    assert alone.sensor_delay.long_name == "delay of the sensors" and alone.torque_limit.units == "N m"
     assert alone.torque_limit.values.tolist() == ["1", "4.0", "none"]
     assert alone.area.units == "rad m s-2" and alone.complete == 1
     assert bool((alone.height.sel(torque_limit="1") < alone.height.sel(torque_limit="none")).all())
+
+
+@pytest.mark.parametrize(
+    "axis, values, dim, units, coordinate",
+    [
+        ("torque_limit_nm", [1, 4.0], "torque_limit", "N m", [1.0, 4.0]),
+        ("rate_limit_nm_s", [10, 100], "rate_limit", "N m s-1", [10.0, 100.0]),
+        ("sensor_delay_s", ["0ms", "20ms"], "sensor_delay", "ms", [0.0, 20.0]),
+        ("time_limit_s", [3, 6], "time_limit", "s", [3.0, 6.0]),
+        ("recovered_below", [0.1, 0.2], "recovered_below", "1", [0.1, 0.2]),
+        ("taper_m_s", ["0.5:1.5", "1:2"], "taper", "m s-1", ["0.5:1.5", "1:2"]),
+        ("law", ["h", "f"], "law", "1", ["h", "f"]),
+    ],
+)
+def test_an_axis_has_its_keys_unit_and_name(axis, values, dim, units, coordinate):
+    """Must hold: the dimension of the option's name, numbers or words as given, the key's unit, and words about it."""
+    found = sa.sweep(over={axis: values}, speeds=[4.0], tolerance=0.2, max_rate=2, progress=False)
+    assert found.area.dims == (dim,) and found[dim].values.tolist() == coordinate
+    assert found[dim].units == units and found[dim].long_name
+
+
+def test_a_rider_axis_is_a_delay():
+    found = sa.sweep(over={"rider.delay_s": [0.03, 0.06]}, rider="young", speeds=[4.0], tolerance=0.2, max_rate=2, progress=False)
+    assert found.delay.units == "s" and found.delay.long_name == "neural delay of the rider"
 
 
 def test_a_cell_is_its_basin(alone):
