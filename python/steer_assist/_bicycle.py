@@ -42,7 +42,7 @@ def as_bicycle(value: Any) -> Any:
     if isinstance(value, pd.Series):
         name = value.name if isinstance(value.name, str) else "own"
         return from_parameters({str(key): one for key, one in value.items()}, name)
-    if hasattr(value, "parameters"):
+    if isinstance(getattr(value, "parameters", None), Mapping):
         name = getattr(value, "bicycleName", None) or getattr(value, "name", None) or type(value).__name__
         return from_object(benchmark(value), str(name))
     raise ScenarioError(f"bicycle: an object of type {type(value).__name__} is no bicycle", "bicycle")

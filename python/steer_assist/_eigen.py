@@ -60,7 +60,7 @@ def eigen(
         With ``key`` and ``range``.
     """
     choice = {
-        "speeds": None if speeds is None else np.atleast_1d(np.asarray(speeds, dtype=float)),
+        "speeds": None if speeds is None else np.atleast_1d(plain(speeds, "speeds")),
         "roots": roots,
         "capsize": capsize,
         "actuator_delay_s": actuator_delay_s,
@@ -68,8 +68,8 @@ def eigen(
         "steer_friction_nm_s_rad": steer_friction_nm_s_rad,
         "steer_inertia_kg_m2": steer_inertia_kg_m2,
     }
-    if not 4 <= roots <= 40:
-        raise ScenarioError(f"roots = {roots} is outside 4 to 40", "roots", (4.0, 40.0))
+    if not isinstance(roots, (int, np.integer)) or not 4 <= roots <= 40:
+        raise ScenarioError(f"roots = {roots!r} is no whole number from 4 to 40", "roots", (4.0, 40.0))
     data = as_scenario(scenario, **changes)
     doubt(data)
     document_text = _core.eigen(text(data), json.dumps(plain(choice)))

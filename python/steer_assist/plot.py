@@ -44,7 +44,7 @@ def basin(result: xr.Dataset, /, *, ax: Axes | None = None, label: str | None = 
         low, high = result.drawn_quantile.isel(quantile=0), result.drawn_quantile.isel(quantile=-1)
         ax.fill_between(speeds, low, high, color=drawn.get_color(), alpha=0.2)
     ax.set_xlabel("forward speed [m/s]")
-    ax.set_ylabel(f"{result.rate.attrs['long_name'].removeprefix('disturbance: ').split(' at ')[0]} [rad/s]")
+    ax.set_ylabel(f"{result.rate.attrs.get('long_name', 'rate').removeprefix('disturbance: ').split(' at ')[0]} [rad/s]")
     ax.set_ylim(bottom=0.0)
     return ax
 
@@ -66,7 +66,7 @@ def ride(result: xr.Dataset, /, *, ax: Axes | None = None, variables: tuple[str,
     for name in variables:
         angle = name.endswith("_rad")
         values = np.degrees(result[name]) if angle else result[name]
-        ax.plot(result.time_s, values, label=f"{name.removesuffix('_rad')} [{'deg' if angle else result[name].units}]")
+        ax.plot(result.time_s, values, label=f"{name.removesuffix('_rad')} [{'deg' if angle else result[name].attrs.get('units', '1')}]")
     ax.set_xlabel("time [s]")
     ax.legend()
     return ax

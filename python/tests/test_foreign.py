@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -138,6 +139,8 @@ FOREIGN = xr.Dataset({"height": ("speed", [1.0])})
         (lambda: sa.replay(FOREIGN), "recording: a Dataset"),
         (lambda: sa.identify(TABLE), "record: a DataFrame"),
         (lambda: sa.as_bicycle(FOREIGN), "Dataset is no bicycle"),
+        (lambda: sa.as_bicycle(SimpleNamespace(parameters=[1.0])), "SimpleNamespace is no bicycle"),
+        (lambda: sa.as_bicycle(SimpleNamespace(parameters={"w": 1.0})), "bicycle"),
         (lambda: sa.sweep(over=[1, 2]), "over: a list"),
     ],
 )
