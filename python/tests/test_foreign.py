@@ -140,7 +140,7 @@ FOREIGN = xr.Dataset({"height": ("speed", [1.0])})
         (lambda: sa.identify(TABLE), "record: a DataFrame"),
         (lambda: sa.as_bicycle(FOREIGN), "Dataset is no bicycle"),
         (lambda: sa.as_bicycle(SimpleNamespace(parameters=[1.0])), "SimpleNamespace is no bicycle"),
-        (lambda: sa.as_bicycle(SimpleNamespace(parameters={"w": 1.0})), "bicycle"),
+        (lambda: sa.as_bicycle(SimpleNamespace(parameters={"w": 1.0})), "`c` is missing"),
         (lambda: sa.sweep(over=[1, 2]), "over: a list"),
     ],
 )
