@@ -102,6 +102,25 @@ impl Run {
     }
 }
 
+/// A small file system on a folder, unmounted when dropped.
+pub struct SmallDisk(PathBuf);
+
+impl SmallDisk {
+    /// Mounts one of `bytes` bytes on a new folder; `None` without the right to, as for anyone but root.
+    pub fn mounted(folder: PathBuf, bytes: usize) -> Option<Self> {
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let size = format!("size={bytes}");
+        let mount = Command::new("mount").args(["-t", "tmpfs", "-o", &size, "tmpfs"]).arg(&folder).output();
+        mount.is_ok_and(|run| run.status.success()).then_some(Self(folder))
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}
+
 /// A file of the repository.
 pub fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the workspace").join(path)

@@ -6,7 +6,7 @@ use super::identify_rider_results::{Finished, Store};
 use super::inputs::once;
 use super::interrupt;
 use super::outputs::{Further, Outputs, Results, complain};
-use super::progress::progress;
+use super::progress::{progress, tell_wait};
 use super::{Ended, Failure, warn};
 use crate::bicycle::catalogue::Bicycle;
 use crate::commands::identify::{FoundRider, IdentifyChoice, ready};
@@ -18,6 +18,7 @@ use crate::report::output::Output;
 use crate::report::table;
 use crate::report::tool::{SCHEMA, Tool};
 use crate::rider::{Neuromuscular, RiderTable, merge};
+use crate::sweep::Reminder;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::path::Path;
 use std::time::Duration;
@@ -62,13 +63,17 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     let (mut finished, mut refused) = (BTreeMap::new(), BTreeMap::new());
     let mut open: VecDeque<usize> = (0..args.files.len()).collect();
     // Records that other processes with the same folder of results identify.
-    let mut elsewhere = VecDeque::new();
+    let (mut elsewhere, mut reminder) = (VecDeque::new(), Reminder::default());
     while !interrupt::stopped() {
         let Some(i) = open.pop_front() else {
             if elsewhere.is_empty() {
                 break;
             }
             open = std::mem::take(&mut elsewhere);
+            if let Some(store) = store.as_ref().filter(|_| reminder.is_due()) {
+                let wait = store.wait(open.iter().map(|i| args.files[*i].as_path()));
+                tell_wait(outputs.shows_progress(), &bar, &wait);
+            }
             std::thread::sleep(LOOK);
             continue;
         };
@@ -85,6 +90,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
                 }
             },
         };
+        reminder.over();
         match of_one {
             Ok(one) => drop(finished.insert(i, one)),
             Err(error) if error.downcast_ref() == Some(&FitError::Interrupted) => break,

@@ -8,7 +8,7 @@ use crate::report::output::Output;
 use crate::report::resolved::ResolvedBicycle;
 use crate::report::tool::Tool;
 use crate::rider::{RiderTable, catalogue};
-use crate::sweep::Claims;
+use crate::sweep::{Claims, Wait};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -53,6 +53,13 @@ impl Store {
         self.claims.done(&claim.id);
         self.claims.clear_empty();
         Ok(Some(done))
+    }
+
+    /// The wait for `records` that other processes work on.
+    pub(super) fn wait<'a>(&self, records: impl Iterator<Item = &'a Path>) -> Wait {
+        let ids: Vec<String> = records.map(id).collect();
+        let claims: Vec<_> = ids.iter().filter_map(|id| self.claims.read(id).ok().flatten()).collect();
+        Wait::new("record", ids.len(), 0, &claims)
     }
 
     fn place(&self, record: &Path, extension: &str) -> PathBuf {

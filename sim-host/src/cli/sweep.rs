@@ -2,7 +2,7 @@
 
 use super::options::{Cells, Options, ScenarioFile, Search};
 use super::outputs::{complain, complain_once, print, write_json};
-use super::progress::progress;
+use super::progress::{progress, tell_wait};
 use super::scenario_error::failure;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt, sweep_status};
@@ -12,7 +12,7 @@ use crate::report::output::Output;
 use crate::scenario::Scenario;
 use crate::scenario::setting::Given;
 use crate::sweep::document::SweepDocument;
-use crate::sweep::{self, Axis, Cell, Folder, Grid, Progress, Shard};
+use crate::sweep::{self, Axis, Cell, Folder, Grid, Progress, Shard, Wait};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -114,7 +114,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let folder = Folder::open(&args.out, &resolved.plan)?;
     let to_do = to_do(&resolved, &mine, &folder);
     let bar = progress(!args.output.quiet, "sweep", to_do.len() * resolved.search.speeds.len(), "columns");
-    let steps = Progress { advanced: &|| bar.inc(1), stop: &interrupt::stopped };
+    let waits = |wait: &Wait| tell_wait(!args.output.quiet, &bar, wait);
+    let steps = Progress { advanced: &|| bar.inc(1), waits: &waits, stop: &interrupt::stopped };
     let done = pool.install(|| sweep::run(&to_do, &resolved.search, &folder, &steps));
     bar.finish_and_clear();
     let done = done?;

@@ -3,8 +3,8 @@
 use super::outputs::{print, write_json};
 use super::{Ended, Failure};
 use crate::report::output::Output;
-use crate::sweep::Folder;
 use crate::sweep::status::{ClaimedCell, StatusDocument};
+use crate::sweep::{Folder, in_the_future};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -37,15 +37,18 @@ fn text(status: &StatusDocument, speeds: usize, label: impl Fn(&ClaimedCell) -> 
             let worker = cell.worker.as_ref().map(|worker| format!(" by {}", worker.name()));
             let attempt =
                 if cell.attempt > 1 { format!(", attempt {}", cell.attempt) } else { String::new() };
+            let renewed = match cell.ahead_s {
+                0 => format!("renewed {} s ago", cell.renewed_s),
+                ahead => in_the_future(ahead),
+            };
             let error = cell.error.as_ref().map(|error| format!(": {error}"));
             let _ = writeln!(
                 text,
-                "{state}  {}{}, for {} s, {} of {speeds} columns{attempt}, renewed {} s ago{}",
+                "{state}  {}{}, for {} s, {} of {speeds} columns{attempt}, {renewed}{}",
                 label(cell),
                 worker.unwrap_or_default(),
                 cell.age_s,
                 cell.columns,
-                cell.renewed_s,
                 error.unwrap_or_default()
             );
         }

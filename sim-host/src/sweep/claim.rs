@@ -95,6 +95,34 @@ impl Claim {
     }
 }
 
+/// Difference that clocks in step may show, as times are whole seconds \[s\].
+const SAME_CLOCK_S: u64 = 2;
+
+impl Claim {
+    /// Time since the claim \[s\], at `now` in seconds since 1970 UTC.
+    pub(super) fn age_s(&self, now: u64) -> u64 {
+        now.saturating_sub(self.since_unix_s)
+    }
+
+    /// Time since the last renewal \[s\].
+    pub(super) fn renewed_s(&self, now: u64) -> u64 {
+        now.saturating_sub(self.renewed_unix_s)
+    }
+
+    /// Time by which the last renewal is in the future, as the machines' clocks differ; 0 if it is not \[s\].
+    pub(super) fn ahead_s(&self, now: u64) -> u64 {
+        Some(self.renewed_unix_s.saturating_sub(now)).filter(|ahead| *ahead > SAME_CLOCK_S).unwrap_or(0)
+    }
+
+    /// Estimated time until its unit of `columns` columns is finished \[s\], at the rate since the claim; `None` if no
+    /// column was finished at the last renewal.
+    pub(super) fn remaining_s(&self, columns: usize, now: u64) -> Option<f64> {
+        let (done, taken) = (self.columns.len(), self.renewed_unix_s.saturating_sub(self.since_unix_s));
+        let left = columns.saturating_sub(done) as f64 * taken as f64 / done as f64;
+        (done > 0 && taken > 0).then(|| (left - self.renewed_s(now) as f64).max(0.0))
+    }
+}
+
 /// Seconds since 1970 UTC.
 pub(super) fn now_unix_s() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs())

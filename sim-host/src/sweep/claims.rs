@@ -6,7 +6,8 @@ use super::seal;
 use super::worker::Worker;
 use super::{DoneColumn, SweepError};
 use crate::report::output::{replace, write_new};
-use std::io::ErrorKind;
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 
@@ -75,17 +76,28 @@ impl Claims {
         Ok(())
     }
 
-    /// Gives a unit up that is not finished: its columns are kept for the next process, or, if that is impossible, as on
-    /// a full disk, lost.
+    /// Gives a unit up that is not finished: its columns are kept for the next process. If there is no space for them, those of
+    /// the last renewal are; if there is none for the error either, the claim is removed.
     pub fn release(&self, claim: Claim, columns: Vec<DoneColumn>, error: Option<String>) {
         if columns.is_empty() && error.is_none() {
             return self.done(&claim.id);
         }
         let id = claim.id.clone();
+        let kept = claim.columns.clone();
         let released = Claim { worker: None, renewed_unix_s: now_unix_s(), columns, error, ..claim };
-        if self.write(&released).is_err() {
+        if self.write(&released).is_err() && self.write_over(&Claim { columns: kept, ..released }).is_err() {
             self.done(&id);
         }
+    }
+
+    /// Writes a claim over its file, whose space suffices on a full disk. A reader may see a part of it, which counts as no
+    /// claim.
+    fn write_over(&self, claim: &Claim) -> std::io::Result<()> {
+        let content = seal::sealed(claim);
+        let mut file = OpenOptions::new().write(true).open(self.path(&claim.id))?;
+        file.write_all(content.as_bytes())?;
+        file.set_len(content.len() as u64)?;
+        file.sync_all()
     }
 
     /// Removes the claim of a finished unit.
@@ -128,7 +140,10 @@ impl Claims {
     }
 
     /// The claim of a unit; `None` if there is none or it is damaged.
-    fn read(&self, id: &str) -> Result<Option<Claim>, SweepError> {
+    ///
+    /// # Errors
+    /// Its file can't be read.
+    pub fn read(&self, id: &str) -> Result<Option<Claim>, SweepError> {
         let path = self.path(id);
         match std::fs::read(&path) {
             Ok(bytes) => Ok(seal::unsealed(&bytes).filter(|claim: &Claim| claim.id == id)),

@@ -18,6 +18,7 @@ mod seal;
 mod shard;
 pub mod status;
 mod unit;
+mod wait;
 mod worker;
 mod write;
 
@@ -35,5 +36,6 @@ pub use run::{Cell, Done, Progress, run};
 pub use seal::sha256;
 pub use shard::{Shard, ShardError};
 pub use unit::{Found, Unit};
+pub use wait::{Holder, Reminder, Wait, in_the_future};
 pub use worker::Worker;
 pub use write::write;

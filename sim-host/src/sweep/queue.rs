@@ -3,6 +3,7 @@
 use super::claim::{Claim, DoneColumn};
 use super::claims::Claims;
 use super::unit::Unit;
+use super::wait::{Reminder, Wait};
 use super::{Cell, Folder, SweepError};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -42,6 +43,7 @@ pub(super) struct Queue<'a> {
     /// Cells that others compute.
     elsewhere: VecDeque<usize>,
     looked: Instant,
+    reminder: Reminder,
     /// Columns of claimed cells that no thread has begun.
     columns: VecDeque<(usize, usize)>,
     under_way: BTreeMap<usize, UnderWay>,
@@ -61,6 +63,7 @@ impl<'a> Queue<'a> {
             open: (0..cells.len()).collect(),
             elsewhere: VecDeque::new(),
             looked: Instant::now(),
+            reminder: Reminder::default(),
             columns: VecDeque::new(),
             under_way: BTreeMap::new(),
             given: 0,
@@ -119,6 +122,22 @@ impl<'a> Queue<'a> {
         self.others += 1;
         self.given += self.speeds;
         Next::Again
+    }
+
+    /// The wait for other processes, when it is time to tell of it.
+    pub(super) fn wait(&mut self) -> Option<Wait> {
+        if !self.under_way.is_empty() {
+            self.reminder.over();
+            return None;
+        }
+        if !self.reminder.is_due() {
+            return None;
+        }
+        let left: Vec<usize> = self.open.iter().chain(&self.elsewhere).copied().collect();
+        // One that can't be read is reported when it is tried again.
+        let claim = |cell: &usize| self.claims.read(&self.cells[*cell].id).ok().flatten();
+        let claims: Vec<Claim> = left.iter().filter_map(claim).collect();
+        Some(Wait::new("cell", left.len(), self.speeds, &claims))
     }
 
     /// Takes a computed column; true if it is the last of its cell.

@@ -3,7 +3,7 @@
 use super::claim::DoneColumn;
 use super::claims::renewing;
 use super::queue::{Next, Queue};
-use super::{Folder, SweepError};
+use super::{Folder, SweepError, Wait};
 use crate::basin::{Search, border};
 use crate::ride::Conditions;
 use serde_json::Value;
@@ -30,6 +30,8 @@ pub struct Cell {
 pub struct Progress<'a> {
     /// Called for every column, also of other processes.
     pub advanced: &'a (dyn Fn() + Sync),
+    /// Called when all that is left is computed by other processes: after a second, then every minute.
+    pub waits: &'a (dyn Fn(&Wait) + Sync),
     /// Checked before every column; true stops the run.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
@@ -87,7 +89,11 @@ pub fn run(
                 }
                 Next::Store(cell) => store(cell)?,
                 Next::Again => {}
-                Next::Later => std::thread::sleep(PAUSE),
+                Next::Later => {
+                    let wait = lock(&queue).wait();
+                    wait.iter().for_each(progress.waits);
+                    std::thread::sleep(PAUSE);
+                }
                 Next::Over => break,
             }
         }

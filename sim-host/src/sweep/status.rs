@@ -45,6 +45,8 @@ pub struct ClaimedCell {
     pub age_s: u64,
     /// Time since its last renewal \[s\].
     pub renewed_s: u64,
+    /// Time by which the last renewal is in the future, as the machines' clocks differ; 0 if it is not \[s\].
+    pub ahead_s: u64,
     /// Time without renewal after which it is stale \[s\].
     pub stale_after_s: u64,
     /// Number of finished columns at the last renewal.
@@ -117,8 +119,9 @@ impl ClaimedCell {
             id: claim.id.clone(),
             values: plan.values(i),
             worker: claim.worker.clone(),
-            age_s: now.saturating_sub(claim.since_unix_s),
-            renewed_s: now.saturating_sub(claim.renewed_unix_s),
+            age_s: claim.age_s(now),
+            renewed_s: claim.renewed_s(now),
+            ahead_s: claim.ahead_s(now),
             stale_after_s: claim.stale_after_s,
             columns: claim.columns.len(),
             attempt: claim.attempt,

@@ -175,7 +175,7 @@ fn an_evaluation_is_shared_in_a_folder() {
         Scenarios { training: trials(), held_out: Vec::new(), ..scenarios(FallCriterion::default()) };
     let laws = |k| [("none".into(), Law::None), ("it".into(), Law::Cl2 { k })];
     let alone = evaluate(&scenarios, &laws(2.0), &coarse(), &|| {}, &|| false).expect("rides");
-    let steps = sim_host::sweep::Progress { advanced: &|| {}, stop: &|| false };
+    let steps = sim_host::sweep::Progress { advanced: &|| {}, waits: &|_| {}, stop: &|| false };
     let shared = |k| evaluate_in(&bench.path("judged"), &scenarios, &laws(k), &coarse(), &steps);
     std::thread::scope(|scope| {
         let both = [(); 2].map(|()| scope.spawn(|| shared(2.0).expect("rides")));

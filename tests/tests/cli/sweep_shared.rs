@@ -6,7 +6,7 @@ use sim_host::sweep::{Claim, Worker, sha256};
 use std::collections::BTreeMap;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};
-use tests::cli::{Bench, Run, repository};
+use tests::cli::{Bench, Run, SmallDisk, repository};
 use tests::json_schema::violations;
 use tests::wait::until;
 
@@ -261,6 +261,56 @@ fn waiting_for_others_can_be_ended() {
     assert_eq!(read_claim(&bench, "s", &unit), claim);
 }
 
+/// Situation: all cells are done but one, which another machine claimed 1000 s ago: with no column finished, with two of three, and
+/// with a clock that is 60 s ahead.
+/// Action: start a process, without and with -q, until it has told what it does; ask for the state.
+/// Must hold: it says that it waits for one cell, by which process, and how long ago the claim was made and renewed, with the time
+/// left only if columns are known; nothing with -q; a renewal in the future is told as such by both.
+#[test]
+fn a_wait_for_others_is_told() {
+    let bench = Bench::new(PROGRAM);
+    must(&bench, &format!("{FORTY} --out s --shard 2/2"));
+    must(&bench, &format!("{FORTY} --out s"));
+    let unit = names(&bench, "s/units").remove(0);
+    let id = unit.strip_suffix(".json").unwrap();
+    let stored: Value = serde_json::from_str(&bench.read(&format!("s/units/{unit}"))).unwrap();
+    std::fs::remove_file(bench.path("s/units").join(&unit)).unwrap();
+    let column = |speed| {
+        serde_json::from_value(json!({"speed": speed, "found": stored["unit"]["found"][0],
+        "work": stored["unit"]["work"]}))
+    };
+    let fresh = foreign(id, Duration::from_secs(5));
+    let begun = Claim { columns: (0..2).map(|i| column(i).expect("a column")).collect(), ..fresh.clone() };
+    let ahead = Claim { renewed_unix_s: fresh.renewed_unix_s + 65, ..fresh.clone() };
+    let told = |claim: &Claim, line: &str| {
+        write_claim(&bench, "s", claim);
+        let child = spawn(&bench, line);
+        tests::wait::until_used(&child, 0.05);
+        std::thread::sleep(Duration::from_millis(2500));
+        send("TERM", &child);
+        ended(child).stderr
+    };
+    let talking = FORTY.strip_suffix(" -q").unwrap().to_owned() + " --out s";
+    let first = |text: String| text.lines().next().unwrap_or_default().to_owned();
+    let known = "waiting for 1 cell of other processes: 1 by elsewhere:7 (job 12_3), claimed 100";
+    let text = first(told(&fresh, &talking));
+    assert!(
+        text.starts_with(known) && text.contains(" s ago, renewed ") && text.ends_with(" s ago"),
+        "{text}"
+    );
+    // 995 s for two columns: less than 500 s for the third.
+    let text = first(told(&begun, &talking));
+    assert!(text.starts_with(known) && text.contains("; about 48") && text.ends_with(" s left"), "{text}");
+    assert!(!told(&fresh, &format!("{talking} -q")).contains("waiting"));
+    let text = first(told(&ahead, &talking));
+    assert!(text.contains(" s in the future, the machines' clocks differ"), "{text}");
+    write_claim(&bench, "s", &Claim { renewed_unix_s: fresh.renewed_unix_s + 105, ..fresh.clone() });
+    let found = status(&bench, "s");
+    assert!((60..=100).contains(&found["running"][0]["ahead_s"].as_u64().unwrap()), "{found}");
+    let text = must(&bench, "sweep --status s");
+    assert!(text.contains("1 running") && text.contains(" s in the future"), "{text}");
+}
+
 /// Situation: one cell of eighty columns.
 /// Action: SIGTERM after the first columns; change a kept column; continue.
 /// Must hold: exit code 130, the finished columns are kept with the released claim; the changed column appears in the
@@ -320,4 +370,37 @@ fn a_full_disk_is_named_and_the_sweep_goes_on_later() {
     assert!(found["failed"][0]["error"].as_str().unwrap().contains("File too large"), "{found}");
     must(&bench, &format!("{FORTY} --out s"));
     assert!(finished(&bench, "s") == one);
+}
+
+/// Situation: a disk that has space for the plan, the claim and not for a cell, not even for a new claim when the cell is finished.
+/// Action: sweep, and fill the disk while the cell is computed; ask for the state; make space and sweep again.
+/// Must hold: exit code 1 with the file named and "No space left"; the cell counts as failed with that reason, not as free;
+/// then the bytes of a sweep that never failed.
+#[test]
+fn a_cell_without_space_on_the_disk_is_no_free_cell() {
+    let bench = Bench::new(PROGRAM);
+    let Some(disk) = SmallDisk::mounted(bench.path("disk"), 256 * 1024) else {
+        eprintln!("skipped: no right to mount a small file system");
+        return;
+    };
+    let child = spawn(&bench, &format!("{ONE_CELL} --out disk/s"));
+    until("a claim", || (!names(&bench, "disk/s/claims").is_empty()).then_some(()));
+    let full = std::fs::write(bench.path("disk/filler"), vec![0; 1 << 20]);
+    assert_eq!(full.map_err(|e| e.kind()), Err(std::io::ErrorKind::StorageFull));
+    let run = ended(child);
+    run.rejected_naming(&["can't write disk/s/units/", "No space left"]);
+    let found = status(&bench, "disk/s");
+    assert_eq!(
+        (&found["done"], &found["free"], count(&found, "failed")),
+        (&json!(0), &json!(0), 1),
+        "{found}"
+    );
+    assert!(found["failed"][0]["error"].as_str().unwrap().contains("No space left"), "{found}");
+    let text = must(&bench, "sweep --status disk/s");
+    assert!(text.contains("1 failed, 0 free") && text.contains("No space left"), "{text}");
+    std::fs::remove_file(bench.path("disk/filler")).unwrap();
+    must(&bench, &format!("{ONE_CELL} --out disk/s"));
+    must(&bench, &format!("{ONE_CELL} --out one"));
+    assert!(finished(&bench, "disk/s") == finished(&bench, "one"));
+    drop(disk);
 }
