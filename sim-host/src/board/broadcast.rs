@@ -54,6 +54,8 @@ pub struct Broadcast {
     pub motion: Option<Motion>,
     /// The causes frame.
     pub causes: Option<Causes>,
+    /// Jump of the receiver's clock ahead, just before it or between two of its frames \[s\]; `None` if there was none.
+    pub clock_jump_s: Option<f64>,
 }
 
 /// Frames received, and what was wrong with them.
@@ -61,7 +63,8 @@ pub struct Broadcast {
 pub struct BroadcastCounts {
     /// Frames of the board that were decoded.
     pub frames: u64,
-    /// Frames of the board that did not arrive, by the times of the others and [`PERIOD_MS`].
+    /// Frames of the board that did not arrive, by the times of the others and [`PERIOD_MS`], without the time of
+    /// [`Self::clock_jumps`].
     pub missing: u64,
     /// Frames with the board's identifiers and another length than 8 bytes.
     pub wrong_length: u64,
@@ -73,6 +76,9 @@ pub struct BroadcastCounts {
     pub stopped: u64,
     /// Times that were before that of the previous frame.
     pub time_backs: u64,
+    /// Steps of the receiver's clock ahead, as when a logger gets its date: more than [`JUMP_S`] between two broadcasts
+    /// between which the board's control steps are those of one period. One real gap in 64 looks the same, as the count has eight bits.
+    pub clock_jumps: u64,
 }
 
 /// State from the frames so far.
@@ -87,10 +93,14 @@ pub struct BroadcastMonitor {
     /// Time of the last frame \[s\].
     last_s: f64,
     open: Option<Broadcast>,
+    /// Control steps between the last two broadcasts without a gap.
+    steps_each: Option<u8>,
 }
 
 /// Time between two broadcasts \[s\].
 const PERIOD_S: f64 = PERIOD_MS as f64 / 1e3;
+/// Shortest time without a broadcast that may be a jump of the clock \[s\]: fifty periods.
+pub const JUMP_S: f64 = 1.0;
 
 impl BroadcastMonitor {
     /// Processes a data frame that arrived at `time_s`; returns the broadcasts that are thereby complete or over.
@@ -126,34 +136,75 @@ impl BroadcastMonitor {
         if open.is_whole() {
             done.extend(self.open.take());
         }
-        done.iter().for_each(|broadcast| self.count(broadcast, broadcast.absent()));
+        done.iter_mut().for_each(|broadcast| self.count(broadcast, broadcast.absent()));
         done
     }
 
     /// The last broadcast, if it is incomplete.
     pub fn end(&mut self) -> Option<Broadcast> {
-        let last = self.open.take()?;
+        let mut last = self.open.take()?;
         // Reception may also end in the middle of one.
-        self.count(&last, 0);
+        self.count(&mut last, 0);
         Some(last)
     }
 
     /// Counts a broadcast and what is missing before and in it.
-    fn count(&mut self, broadcast: &Broadcast, absent: u64) {
+    fn count(&mut self, broadcast: &mut Broadcast, absent: u64) {
+        let before = self.newest;
+        if let Some(before) = before {
+            broadcast.clock_jump_s = self.clock_jump(&before, broadcast);
+        }
+        self.newest = Some(*broadcast);
         // Reception may begin in the middle of a broadcast.
-        let Some(before) = self.newest.replace(*broadcast) else { return };
+        let Some(before) = before else { return };
+        if broadcast.clock_jump_s.is_some() {
+            self.counts.clock_jumps += 1;
+            // The frames of a broadcast in the middle of which the clock jumped are in two rows.
+            let halves = broadcast.completes(&before);
+            let counted = if halves { before.absent() } else { 0 };
+            let absent = if halves { 0 } else { absent };
+            self.counts.missing = self.counts.missing.saturating_add(absent).saturating_sub(counted);
+            return;
+        }
         let periods = ((broadcast.t - before.t) / PERIOD_S).round().max(1.0) as u64;
         let missing = (periods - 1).saturating_mul(3).saturating_add(absent);
         self.counts.missing = self.counts.missing.saturating_add(missing);
         // After a gap the byte may have the same value by chance.
-        let steps = |broadcast: &Broadcast| broadcast.state.map(|state| state.steps);
-        if periods == 1 && steps(broadcast).is_some() && steps(broadcast) == steps(&before) {
-            self.counts.stopped += 1;
-        }
+        let steps = steps_between(&before, broadcast).filter(|_| periods == 1);
+        self.steps_each = steps.or(self.steps_each);
+        self.counts.stopped += u64::from(steps == Some(0));
+    }
+
+    /// The jump of the receiver's clock before a broadcast \[s\]: a long time in which the board took the control steps of
+    /// one period, or none if they are two parts of one broadcast.
+    fn clock_jump(&self, before: &Broadcast, broadcast: &Broadcast) -> Option<f64> {
+        let halves = broadcast.completes(before);
+        let ahead_s = broadcast.t - before.t - if halves { 0.0 } else { PERIOD_S };
+        // While control is stopped the count can't tell.
+        let each = self.steps_each.filter(|each| *each > 0);
+        let one_period = each.is_some() && steps_between(before, broadcast) == each;
+        (ahead_s > JUMP_S && (halves || one_period)).then_some(ahead_s)
     }
 }
 
+/// Control steps from one broadcast to the next, modulo 256; `None` if one has no state.
+fn steps_between(before: &Broadcast, broadcast: &Broadcast) -> Option<u8> {
+    Some(broadcast.state?.steps.wrapping_sub(before.state?.steps))
+}
+
 impl Broadcast {
+    /// Whether both are two parts of a whole one, `before` the first.
+    fn completes(&self, before: &Self) -> bool {
+        let (mine, theirs) = (self.kinds(), before.kinds());
+        // The frames of a broadcast come in this order.
+        (1..3).any(|k| (0..3).all(|i| theirs[i] == (i < k) && mine[i] == (i >= k)))
+    }
+
+    /// Whether there is a state, a motion, and a causes frame.
+    fn kinds(&self) -> [bool; 3] {
+        [self.state.is_some(), self.motion.is_some(), self.causes.is_some()]
+    }
+
     fn has(&self, message: &Message) -> bool {
         match message {
             Message::State(_) => self.state.is_some(),
@@ -171,7 +222,7 @@ impl Broadcast {
     }
 
     fn absent(&self) -> u64 {
-        [self.state.is_none(), self.motion.is_none(), self.causes.is_none()].map(u64::from).iter().sum()
+        self.kinds().map(|present| u64::from(!present)).iter().sum()
     }
 
     fn is_whole(&self) -> bool {
@@ -180,7 +231,7 @@ impl Broadcast {
 
     /// The broadcast as a row.
     pub fn row(&self) -> BroadcastRow {
-        let Self { t, state, motion, causes } = *self;
+        let Self { t, state, motion, causes, .. } = *self;
         let motion = motion.unwrap_or_default();
         BroadcastRow {
             t,

@@ -3,6 +3,11 @@
 /// Error of a command.
 pub(super) type Failure = Box<dyn std::error::Error>;
 
+/// Options that do not fit each other or their input, found after parsing: exit code 2, as for all wrong usage.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+pub(super) struct UsageError(pub(super) String);
+
 /// How a command without an error ended.
 pub(super) enum Ended {
     /// Complete.

@@ -26,7 +26,7 @@ pub(super) struct Args {
     #[command(flatten)]
     port: PortArgs,
     /// Show the fault records in a recording of `monitor --record`
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "baud")]
     file: Option<PathBuf>,
     /// Erase the fault records on the board after showing them
     #[arg(long, conflicts_with = "file")]

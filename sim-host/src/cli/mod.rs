@@ -56,7 +56,7 @@ mod threads;
 mod weave_args;
 
 use clap::{Parser, Subcommand};
-use ended::{Ended, Failure, is_broken_pipe};
+use ended::{Ended, Failure, UsageError, is_broken_pipe};
 use outputs::warn;
 use std::process::ExitCode;
 
@@ -190,7 +190,7 @@ pub fn run() -> ExitCode {
         Err(e) if is_broken_pipe(&*e) => ExitCode::SUCCESS,
         Err(e) => {
             outputs::complain(&format!("error: {e}"));
-            ExitCode::from(1)
+            ExitCode::from(if e.is::<UsageError>() { 2 } else { 1 })
         }
     }
 }

@@ -48,11 +48,11 @@ pub(super) struct Args {
     #[command(flatten)]
     port: PortArgs,
     /// A recording of --record, read as fast as possible
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", conflicts_with = "baud")]
     file: Option<PathBuf>,
     /// The board's frames on CAN instead of its link: an interface of Linux, for example can0, or a recording (candump, ASC, BLF,
     /// MDF 4), read as fast as possible
-    #[arg(long, value_name = "INTERFACE|FILE")]
+    #[arg(long, value_name = "INTERFACE|FILE", conflicts_with = "baud")]
     pub(super) can: Option<String>,
     /// Write every control step of the telemetry, with --can every broadcast, as a CSV table, at once; - is standard output
     #[arg(long, value_name = "FILE")]
@@ -66,8 +66,8 @@ pub(super) struct Args {
     /// End after this time, for example 10s [default: never]
     #[arg(long = "for", value_name = "TIME", value_parser = duration, conflicts_with = "file")]
     pub(super) length: Option<f64>,
-    /// Longest wait for a lost serial port; 0s ends at once
-    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "60s", conflicts_with_all = ["file", "can"])]
+    /// Longest wait for the lost serial port of --port; 0s ends at once
+    #[arg(long, value_name = "TIME", value_parser = duration, default_value = "60s", conflicts_with_all = ["file", "can", "qemu", "virtual_board"])]
     reopen: f64,
 }
 
@@ -104,8 +104,8 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let title = board.as_ref().map_or("a recording".to_owned(), BoardName::label);
     let config = json!({"board": board});
     let table = args.csv.as_deref().map(|path| Table::create(path, &config)).transpose()?;
-    let mcap = args.mcap.as_deref();
-    let mcap = mcap.map(|path| Mcap::create::<TelemetryRow>(path, "/board", &config)).transpose()?;
+    let (mcap, live) = (args.mcap.as_deref(), args.file.is_none());
+    let mcap = mcap.map(|path| Mcap::create::<TelemetryRow>(path, "/board", &config, live)).transpose()?;
     let view = if quiet { View::None } else { View::new(title)? };
     let damaged_before = client.damaged();
     let mut session = Session {
@@ -244,7 +244,7 @@ impl Session {
         match self.monitor.take(received) {
             News::Step(row) => {
                 self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
-                self.mcap.as_mut().map_or(Ok(()), |mcap| mcap.write(row.t, &row))?;
+                self.mcap = self.mcap.take().map(|mcap| mcap.write(row.t, &row)).transpose()?;
                 let (damaged, Some(step)) = (self.damaged(), &self.monitor.newest) else { return Ok(()) };
                 let Telemetry { command, driven, late, .. } = *step;
                 let seen = Seen { mode: command.mode, causes: command.causes, driven, late };

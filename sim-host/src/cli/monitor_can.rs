@@ -5,7 +5,7 @@ use super::monitor_files::{Mcap, Table, failed, open};
 use super::monitor_text::{cause_lines, cause_names, limit_names};
 use super::monitor_view::{Seen, View};
 use super::outputs::complain;
-use super::{Ended, Failure, interrupt};
+use super::{Ended, Failure, UsageError, interrupt};
 use crate::board::broadcast::{Broadcast, BroadcastMonitor, BroadcastRow};
 use crate::board::socketcan::{ArrivedFrame, Bus};
 use crate::recording::frames::{Frames, Id};
@@ -42,8 +42,10 @@ pub(super) fn run(args: &Args, source: &str, quiet: bool) -> Result<Ended, Failu
         let ended = session.end(&[]);
         return followed.and(ended);
     }
-    if args.record.is_some() || args.length.is_some() {
-        return Err(format!("--record and --for are for a CAN interface; {source} is a recording").into());
+    let idle = [("--record", args.record.is_some()), ("--for", args.length.is_some())];
+    if let Some((option, _)) = idle.into_iter().find(|(_, given)| *given) {
+        let what = format!("{option} is for a CAN interface; {source} is a recording");
+        return Err(UsageError(what).into());
     }
     let frames = frames(path)?;
     // One board: the first bus with its frames.
@@ -69,8 +71,8 @@ impl Session {
     fn new(args: &Args, source: &str, start_s: Option<f64>, quiet: bool) -> Result<Self, Failure> {
         let config = json!({"can": {"source": source, "start_s": start_s}});
         let table = args.csv.as_deref().map(|path| Table::create(path, &config)).transpose()?;
-        let mcap = args.mcap.as_deref();
-        let mcap = mcap.map(|path| Mcap::create::<BroadcastRow>(path, "/can", &config)).transpose()?;
+        let (mcap, live) = (args.mcap.as_deref(), start_s.is_none());
+        let mcap = mcap.map(|path| Mcap::create::<BroadcastRow>(path, "/can", &config, live)).transpose()?;
         let view = if quiet { View::None } else { View::new(format!("CAN: {source}"))? };
         let seen = Seen { mode: Mode::Off, causes: Causes::NONE, driven: false, late: 0 };
         Ok(Self { monitor: BroadcastMonitor::default(), errors: 0, remote: 0, view, seen, table, mcap })
@@ -132,9 +134,15 @@ impl Session {
         let row = broadcast.row();
         self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
         let time_s = self.monitor.start_s.unwrap_or_default() + row.t;
-        self.mcap.as_mut().map_or(Ok(()), |mcap| mcap.write(time_s, &row))?;
+        self.mcap = self.mcap.take().map(|mcap| mcap.write(time_s, &row)).transpose()?;
         if let Some(state) = broadcast.state {
             (self.seen.mode, self.seen.driven) = (state.mode, state.driven);
+        }
+        if let Some(jump_s) = broadcast.clock_jump_s {
+            let t = broadcast.t - jump_s;
+            self.view.say(&format!(
+                "the receiver's clock jumped ahead by {jump_s:.3} s at {t:.3} s; by the count of control steps nothing is missing"
+            ))?;
         }
         self.seen.causes = broadcast.causes.unwrap_or(self.seen.causes);
         self.view.step(row.t, self.seen, || line(broadcast, self.monitor.counts.missing))
@@ -164,6 +172,10 @@ impl Session {
         if !unread.is_empty() {
             complain(&format!("warning: part of the data was not decoded: {}", unread.join(", ")));
         }
+        let skipped = [(self.errors, "error frames"), (self.remote, "remote frames, which have no data")];
+        for (count, what) in skipped.into_iter().filter(|(count, _)| *count > 0) {
+            complain(&format!("warning: {what}: {count}; left out"));
+        }
         let ended = if unread.is_empty() { Ended::Done } else { Ended::Partly };
         Ok(if interrupt::stopped() { Ended::Interrupted } else { ended })
     }
@@ -179,6 +191,7 @@ impl Session {
             (self.remote, "remote frames"),
             (counts.stopped, "broadcasts with control stopped"),
             (counts.time_backs, "times back"),
+            (counts.clock_jumps, "jumps of the clock ahead"),
         ];
         let further = further.iter().filter(|(count, _)| *count > 0);
         let further: String = further.map(|(count, what)| format!(", {count} {what}")).collect();

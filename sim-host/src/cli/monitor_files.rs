@@ -1,13 +1,13 @@
 //! Files that `monitor` writes continuously: they replace an older file at once and remain however it ends.
 
 use super::Failure;
-use crate::report::mcap::Recorder;
+use crate::report::mcap::{McapError, Recorder};
 use crate::report::table::heading;
 use schemars::JsonSchema;
 use serde::Serialize;
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A table whose rows are written at once.
 pub(super) struct Table {
@@ -32,10 +32,16 @@ impl Table {
     }
 }
 
-/// An MCAP file whose rows are written in chunks of a second or so.
+/// An MCAP file whose rows are written in chunks of a second or so. If it can't be written on, as on a full disk, it is removed,
+/// except that of a live board, which ends with its last whole chunk.
 pub(super) struct Mcap {
-    path: String,
+    path: PathBuf,
     recorder: Recorder<File>,
+    file: File,
+    /// Whether the rows can't be had again.
+    live: bool,
+    /// Bytes up to the end of the last whole chunk of a live board; 0 before the first.
+    whole: u64,
 }
 
 impl Mcap {
@@ -43,25 +49,47 @@ impl Mcap {
         path: &Path,
         topic: &str,
         config: &serde_json::Value,
+        live: bool,
     ) -> Result<Self, Failure> {
         crate::report::mcap::available().map_err(|error| format!("--mcap: {error}"))?;
         let name = path.display().to_string();
-        let file = File::create(path).map_err(|error| failed(&name, error))?;
-        let recorder = Recorder::new::<R>(file, topic, config).map_err(|error| unwritten(&name, &error))?;
-        Ok(Self { path: name, recorder })
+        let opened = File::create(path).and_then(|file| Ok((file.try_clone()?, file)));
+        let (file, to) = opened.map_err(|error| failed(&name, error))?;
+        match Recorder::new::<R>(to, topic, config) {
+            Ok(recorder) => Ok(Self { path: path.into(), recorder, file, live, whole: 0 }),
+            Err(error) => Err(ended_early(path, &file, 0, &error)),
+        }
     }
 
-    pub(super) fn write(&mut self, time_s: f64, row: &impl Serialize) -> Result<(), Failure> {
-        self.recorder.write(time_s, row).map_err(|error| unwritten(&self.path, &error))
+    /// Adds a row; the file, if it can be written on.
+    pub(super) fn write(mut self, time_s: f64, row: &impl Serialize) -> Result<Self, Failure> {
+        match self.recorder.write(time_s, row) {
+            Ok(true) if self.live => self.whole = self.file.metadata().map_or(self.whole, |file| file.len()),
+            Ok(_) => {}
+            Err(error) => {
+                // It may still write when it is dropped.
+                drop(self.recorder);
+                return Err(ended_early(&self.path, &self.file, self.whole, &error));
+            }
+        }
+        Ok(self)
     }
 
     pub(super) fn finish(self) -> Result<(), Failure> {
-        self.recorder.finish().map_err(|error| unwritten(&self.path, &error))
+        let Self { path, recorder, file, whole, .. } = self;
+        recorder.finish().map_err(|error| ended_early(&path, &file, whole, &error))
     }
 }
 
-fn unwritten(path: &str, error: &impl std::fmt::Display) -> Failure {
-    format!("can't write {path}: {error}").into()
+/// Cuts a file that can't be written on to its `whole` chunks, or removes it.
+fn ended_early(path: &Path, file: &File, whole: u64, error: &McapError) -> Failure {
+    let kept = whole > 0 && file.set_len(whole).is_ok();
+    if !kept && file.metadata().is_ok_and(|file| file.is_file()) {
+        // What is left of it is named in the error.
+        let _ = std::fs::remove_file(path);
+    }
+    let rest = if kept { "; the rows before are in it, without the file's end (`mcap recover`)" } else { "" };
+    format!("can't write {}: {error}{rest}", path.display()).into()
 }
 
 /// Opens a file for writing at once; an older one is truncated.
@@ -75,5 +103,5 @@ pub(super) fn open(path: &Path) -> Result<Box<dyn Write>, Failure> {
 
 /// Keeps a closed standard output recognisable; other errors name the file.
 pub(super) fn failed(path: &str, error: io::Error) -> Failure {
-    if path == "-" { error.into() } else { unwritten(path, &error) }
+    if path == "-" { error.into() } else { format!("can't write {path}: {error}").into() }
 }

@@ -26,8 +26,8 @@ pub(super) struct PortArgs {
     /// The flashed image on the virtual board [default IMAGE: where `cargo xtask firmware` builds it]
     #[arg(long, value_name = "IMAGE", require_equals = true)]
     virtual_board: Option<Option<PathBuf>>,
-    /// Baud rate of the serial port; no effect over USB
-    #[arg(long, default_value_t = 115_200, value_name = "BAUD", value_parser = clap::value_parser!(u32).range(300..=4_000_000))]
+    /// Baud rate of the serial port of --port; no effect over USB
+    #[arg(long, default_value_t = 115_200, value_name = "BAUD", conflicts_with_all = ["qemu", "virtual_board"], value_parser = clap::value_parser!(u32).range(300..=4_000_000))]
     baud: u32,
 }
 

@@ -143,7 +143,9 @@ fn compact<'a>(stamp: Stamp, bus: &'a str, id: &str, data: &str) -> Result<Line<
         return Ok(Line::Error);
     }
     let id = Id::new(number, extended).ok_or(BITS)?;
-    if data.strip_prefix('R').is_some_and(|dlc| dlc.bytes().all(|digit| digit.is_ascii_hexdigit())) {
+    // The length requested may follow, and as `_9` to `_F` the code as sent.
+    let length = |text: &str| text.bytes().all(|byte| byte.is_ascii_hexdigit() || byte == b'_');
+    if data.strip_prefix('R').is_some_and(length) {
         return Ok(Line::Remote);
     }
     let (most, digits) = match data.strip_prefix('#') {

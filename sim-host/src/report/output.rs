@@ -107,8 +107,7 @@ impl Place {
         if !folder.is_dir() {
             return Err(io::Error::other(format!("there is no folder {}", folder.display())));
         }
-        // Only the kind: the error's text names the temporary file, which the user does not know.
-        Builder::new().prefix(TEMPORARY).tempfile_in(folder).map_err(|e| e.kind())?;
+        Builder::new().prefix(TEMPORARY).tempfile_in(folder).map_err(|e| without_name(&e, folder))?;
         Ok(Place::File(folder.canonicalize()?, name.into()))
     }
 }
@@ -138,14 +137,24 @@ pub(crate) fn write_new(path: &Path, content: &[u8]) -> Result<bool, OutputError
     }
 }
 
+/// The error of a temporary file in `folder`, without its name, which the user does not know.
+fn without_name(error: &io::Error, folder: &Path) -> io::Error {
+    match error.kind() {
+        kind @ io::ErrorKind::NotFound => {
+            io::Error::new(kind, format!("there is no folder {}", folder.display()))
+        }
+        kind @ io::ErrorKind::StorageFull => io::Error::new(kind, "No space left on device"),
+        kind => kind.into(),
+    }
+}
+
 /// A temporary file in `folder` with the content; removed when dropped.
 fn temporary(folder: &Path, content: &[u8]) -> io::Result<NamedTempFile> {
     let mut builder = Builder::new();
     builder.prefix(TEMPORARY).suffix(".tmp");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    // Neither error names the temporary file, which the user does not know.
-    let mut file = builder.tempfile_in(folder).map_err(|e| e.kind())?;
+    let mut file = builder.tempfile_in(folder).map_err(|e| without_name(&e, folder))?;
     file.as_file_mut().write_all(content)?;
     file.as_file().sync_all()?;
     Ok(file)

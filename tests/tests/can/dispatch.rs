@@ -67,7 +67,7 @@ fn two_buses_and_two_databases() {
     assert_eq!(remarks(&twice)[1], "message RearWheel: two databases have 0x304; the first is used");
 }
 
-/// Situation: a binary log that ends within its header, a measurement file of the previous version, one that is only a header.
+/// Situation: a binary log that ends within its header, a measurement file of the previous version, one that is cut in its header.
 /// Action: read.
 /// Must hold: rejected, with a remedy.
 #[test]
@@ -81,5 +81,8 @@ fn unsupported_kinds_are_rejected() {
     assert_eq!(error, "a.mf4: is of MDF `3.30`; only MDF 4 is read, convert it");
     let error =
         written("a.mf4", &std::fs::read(file("ride.mf4")).unwrap()[..100], &["ride.dbc"]).unwrap_err();
-    assert_eq!(error, "a.mf4: has no header where MDF 4 has it");
+    assert_eq!(
+        error,
+        "a.mf4: was cut or is damaged: the file ends within its data, at byte 100, and refers to data up to byte 168"
+    );
 }

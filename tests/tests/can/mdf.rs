@@ -68,6 +68,32 @@ fn a_finished_file_that_was_cut_is_reported() {
     assert!(remarks(&recording)[0].contains("the file ends within its data"), "{:?}", remarks(&recording));
 }
 
+/// Situation: finished files cut at every length.
+/// Action: read.
+/// Must hold: each is read in part or rejected; either way the first remark says that the file was cut, with its own length and that
+/// of the data it refers to, unless everything that a reader needs is there.
+#[test]
+fn a_cut_file_is_called_cut() {
+    for (name, needed) in
+        [("sorted.mf4", 0.95), ("channels.mf4", 0.95), ("unsorted.mf4", 0.95), ("ride.mf4", 0.95)]
+    {
+        let whole = std::fs::read(file(name)).unwrap();
+        let mut called = 0;
+        for length in (10..whole.len()).step_by(7) {
+            let first = match mdf::parse(&whole[..length]) {
+                Ok(content) => content.remarks.first().map(ToString::to_string),
+                Err(remark) => Some(remark.to_string()),
+            };
+            let cut = first.is_some_and(|what| {
+                what.contains("was cut") && (what.contains(&format!("at byte {length}")) || length < 64)
+            });
+            called += usize::from(cut);
+        }
+        let lengths = (10..whole.len()).step_by(7).count();
+        assert!(called as f64 >= needed * lengths as f64, "{name}: {called} of {lengths}");
+    }
+}
+
 /// Situation: six records of a time and a number, in two blocks of which the first ends within the third record; the
 /// same in a transposed block whose size is no multiple of its columns, by itself and in a list; a list that names a
 /// block twice; a list that leads back to itself.

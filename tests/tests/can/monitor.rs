@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use sim_host::board::broadcast::{Broadcast, BroadcastMonitor};
 use std::process::{Command, Stdio};
 use std::time::Duration;
-use tests::cli::{Bench, repository};
+use tests::cli::{Bench, SmallDisk, repository};
 use tests::draws::runner;
 use tests::python;
 
@@ -137,7 +137,8 @@ fn what_is_missing_or_wrong_is_counted() {
     assert_eq!(
         run.stderr,
         "warning: part of the data was not decoded: 1 frames of a wrong length, 1 frames not understood, line 127: its \
-         bytes are no hexadecimal digits; left out\n"
+         bytes are no hexadecimal digits; left out\n\
+         warning: error frames: 1; left out\nwarning: remote frames, which have no data: 1; left out\n"
     );
     let table = bench.read("odd.csv");
     let data = &rows(&table)[1..];
@@ -168,10 +169,115 @@ fn a_stopped_controller_is_counted() {
     assert!(run.stdout.contains("120 frames, 0 missing, 1 times back"), "{run:?}");
 }
 
+/// Situation: a log whose logger gets its date after 20 of 40 broadcasts, a day ahead: between two broadcasts, and between the frames
+/// of one, after the first and after the second; one in which the board was off for ten seconds; one in which control stood still for ten
+/// seconds without a frame.
+/// Action: monitor them.
+/// Must hold: in the first nothing is missing, all frames are in the table, and the jump is told with its size and place, exit code 0;
+/// in the others the frames of the gap are missing, and no jump is told.
+#[test]
+fn a_jump_of_the_loggers_date_is_no_gap() {
+    let bench = Bench::new(PROGRAM);
+    for (at, rows_of_it) in [(60, 40), (61, 41), (62, 41)] {
+        let mut frames = ride(40);
+        frames[at..].iter_mut().for_each(|(t, ..)| *t += 86400.0);
+        bench.write("date.log", candump(&frames));
+        let run = bench.run("monitor --can date.log --csv date.csv");
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{at}: {run:?}");
+        let counted = "120 frames, 0 missing, 1 jumps of the clock ahead; 86400.780 s\n";
+        assert!(run.stdout.ends_with(counted), "{at}: {}", run.stdout);
+        let told = run.stdout.lines().filter(|line| line.contains("clock jumped ahead by 86400.0")).count();
+        assert_eq!(told, 1, "{at}: {}", run.stdout);
+        assert_eq!(rows(&bench.read("date.csv")).len(), rows_of_it + 1, "{at}");
+    }
+    // 507 periods are 10140 steps, 156 modulo 256; 504 of a controller that stands still are none.
+    let gap = |periods: f64, stands: bool| {
+        let mut frames = ride(40);
+        frames[60..].iter_mut().for_each(|(t, ..)| *t += periods * 0.02);
+        let lost = if stands { 0 } else { ((periods as u64 * 20) % 256) as u8 };
+        let stood = frames[54].2[7];
+        for k in 0..40 {
+            let steps = &mut frames[3 * k].2[7];
+            *steps = match (stands, k >= 19) {
+                (true, true) => stood,
+                (true, false) => *steps,
+                (false, _) => {
+                    if k >= 20 {
+                        steps.wrapping_add(lost)
+                    } else {
+                        *steps
+                    }
+                }
+            };
+        }
+        bench.write("gap.log", candump(&frames));
+        bench.run("monitor --can gap.log")
+    };
+    for (run, missing) in [(gap(507.0, false), 1521), (gap(504.0, true), 1512)] {
+        assert_eq!(run.code, Some(0), "{run:?}");
+        assert!(run.stdout.contains(&format!("120 frames, {missing} missing")), "{}", run.stdout);
+        assert!(!run.stdout.contains("jump"), "{}", run.stdout);
+    }
+}
+
+/// Situation: a log with frames of CAN FD, of the board's identifiers and of others, and remote frames with their length codes, as
+/// `candump -L` and the screen show them; standard output is a table.
+/// Action: monitor.
+/// Must hold: frames of eight bytes are read; others are counted; what has no data is left out with a warning that counts it.
+#[test]
+fn frames_of_other_kinds_are_read_or_told() {
+    let bench = Bench::new(PROGRAM);
+    let mut log = candump(&ride(10));
+    log = log.replacen(" 320#", " 320##1", 1);
+    log += "(1700000000.500000) can0 7DF##0010203040506070809101112\n(1700000000.500000) can0 321#R8_B\n\
+            (1700000000.500000) can0 321#R\n(1700000000.500000) can0 20000004#0000000000000000\n";
+    bench.write("kinds.log", log);
+    let run = bench.run("monitor --can kinds.log --csv -");
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert_eq!(rows(&run.stdout).len(), 11, "{}", run.stdout);
+    assert_eq!(
+        run.stderr,
+        "warning: error frames: 1; left out\nwarning: remote frames, which have no data: 2; left out\n"
+    );
+    let run = bench.run("monitor --can kinds.log");
+    assert!(
+        run.stdout.contains("30 frames, 0 missing, 1 of others, 1 error frames, 2 remote frames"),
+        "{run:?}"
+    );
+}
+
+/// Situation: a small file system that is full after some rows, with a recording and with a recording of the link.
+/// Action: monitor them with --mcap, and with --csv; with a place in a folder that is not there.
+/// Must hold: exit code 1; the file and "No space left", or the missing folder, are named; no part of an MCAP file is left.
+#[test]
+fn a_full_disk_is_named() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("ride.log", candump(&ride(2000)));
+    bench
+        .run("monitor --can ride.log --mcap no/ride.mcap")
+        .rejected_naming(&["no/ride.mcap", "no folder no"]);
+    let Some(_disk) = SmallDisk::mounted(bench.path("disk"), 64 * 1024) else {
+        eprintln!("skipped: no right to mount a small file system");
+        return;
+    };
+    let run = bench.run("monitor --can ride.log --mcap disk/ride.mcap");
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(run.stderr.contains("can't write disk/ride.mcap: No space left"), "{}", run.stderr);
+    assert_eq!(std::fs::read_dir(bench.path("disk")).unwrap().count(), 0);
+    let run = bench.run("monitor --can ride.log --csv disk/ride.csv");
+    assert_eq!(run.code, Some(1), "{run:?}");
+    assert!(run.stderr.contains("can't write disk/ride.csv: No space left"), "{}", run.stderr);
+    bench
+        .run("ride --speed 4 --mcap disk/again.mcap -q")
+        .rejected_naming(&["disk/again.mcap", "No space left"]);
+    let names = std::fs::read_dir(bench.path("disk")).unwrap().map(|entry| entry.unwrap().file_name());
+    assert_eq!(names.collect::<Vec<_>>(), ["ride.csv"]);
+}
+
 /// Situation: a log of Vector that was cut; one without a board's frames; a file that is no log; a name that is neither
-/// a file nor an interface; outputs that a recording cannot have.
+/// a file nor an interface; outputs that a recording cannot have; options without effect on a recording.
 /// Action: monitor. Must hold: the first is read up to its end and reported, exit code 3; the others are rejected, with
-/// the reason; no table is left.
+/// the reason, wrong usage with exit code 2 and the option; no table is left.
 #[test]
 fn what_cannot_be_monitored_is_rejected() {
     let bench = Bench::new(PROGRAM);
@@ -193,7 +299,20 @@ fn what_cannot_be_monitored_is_rejected() {
     bench.run("monitor --can no.log").rejected_naming(&["no.log"]);
     bench.run("monitor --can nowhere0").rejected_naming(&["nowhere0", "no file"]);
     bench.write("ride.log", candump(&ride(3)));
-    bench.run("monitor --can ride.log --record again.log").rejected_naming(&["--record", "ride.log"]);
+    for (line, option) in [
+        ("--can ride.log --record again.log", "--record"),
+        ("--can ride.log --for 3s", "--for"),
+        ("--can ride.log --baud 9600", "--baud"),
+        ("--can ride.log --reopen 3s", "--reopen"),
+        ("--file ride.link --baud 9600", "--baud"),
+        ("--file ride.link --for 3s", "--for"),
+        ("--qemu --baud 9600", "--baud"),
+        ("--virtual-board --reopen 3s", "--reopen"),
+    ] {
+        let run = bench.run(&format!("monitor {line}"));
+        assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""), "{line}: {run:?}");
+        assert!(run.stderr.contains(option), "{line}: {}", run.stderr);
+    }
     bench.run("monitor --can ride.log --mcap -").rejected_naming(&["--mcap", "standard output"]);
     bench.run("monitor --can ride.log --csv a --mcap a").rejected_naming(&["--csv", "--mcap"]);
     let run = bench.run("monitor --can ride.log --file ride.link");

@@ -1,5 +1,6 @@
 //! Blocks of an MDF file: name, links to other blocks, data. Links out of the file are rejected; lists end.
 
+use std::cell::Cell;
 use std::collections::HashSet;
 
 /// Bytes of a block before its links.
@@ -13,6 +14,8 @@ pub(super) struct File<'a> {
     /// Bits of what was not updated in an unfinished file.
     pub(super) undone: u16,
     read: HashSet<usize>,
+    /// End of a block that the file refers to and that lies beyond its own end.
+    beyond: Cell<Option<usize>>,
 }
 
 /// One block.
@@ -29,13 +32,25 @@ impl<'a> File<'a> {
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         let unfinished = bytes.starts_with(b"UnFinMF ");
         let undone = bytes.get(60..62).map_or(0, |flags| u16::from_le_bytes([flags[0], flags[1]]));
-        Self { bytes, unfinished, undone: if unfinished { undone } else { 0 }, read: HashSet::new() }
+        let (undone, read, beyond) = (if unfinished { undone } else { 0 }, HashSet::new(), Cell::new(None));
+        Self { bytes, unfinished, undone, read, beyond }
+    }
+
+    /// How the file was cut, if it refers to more than it has.
+    pub(super) fn cut(&self) -> Option<String> {
+        let (end, beyond) = (self.bytes.len(), self.beyond.get()?);
+        Some(format!(
+            "was cut or is damaged: the file ends within its data, at byte {end}, and refers to data up to byte {beyond}"
+        ))
     }
 
     /// The block at a position, of any kind.
     pub(super) fn any(&self, at: usize) -> Option<Block<'a>> {
-        let rest = self.bytes.get(at..)?;
-        let (head, rest) = rest.split_at_checked(HEAD_BYTES)?;
+        let head_and_rest = self.bytes.get(at..).and_then(|rest| rest.split_at_checked(HEAD_BYTES));
+        let Some((head, rest)) = head_and_rest else {
+            self.beyond.set(Some(at.saturating_add(HEAD_BYTES)));
+            return None;
+        };
         let name = *head.first_chunk::<4>()?;
         let number = |at: usize| Some(u64::from_le_bytes(*head.get(at..)?.first_chunk()?));
         let links = usize::try_from(number(16)?).ok()?.checked_mul(8)?;
@@ -47,6 +62,9 @@ impl<'a> File<'a> {
             size = Some(rest.len());
         }
         let size = size?;
+        if size > rest.len() {
+            self.beyond.set(Some((at + HEAD_BYTES).saturating_add(size)));
+        }
         let all = &rest[..size.min(rest.len())];
         let (links, data) = all.split_at_checked(links)?;
         Some(Block { name, links, data, cut: size > rest.len() })

@@ -22,6 +22,9 @@ use super::Remark;
 use block::File;
 pub use content::Content;
 
+/// Bytes before the first block.
+const HEAD_BYTES: usize = 64;
+
 /// Whether the bytes are an MDF file, finished or not.
 pub fn is_one(bytes: &[u8]) -> bool {
     bytes.starts_with(b"MDF     ") || bytes.starts_with(b"UnFinMF ")
@@ -33,6 +36,9 @@ pub fn is_one(bytes: &[u8]) -> bool {
 /// The version is not 4, or the file has neither numbers nor CAN frames.
 pub fn parse(bytes: &[u8]) -> Result<Content, Remark> {
     let fails = |what: &str| Remark::of_file(what.to_owned());
+    if bytes.len() < HEAD_BYTES {
+        return Err(fails(&format!("was cut: it has {} of the {HEAD_BYTES} bytes of its head", bytes.len())));
+    }
     let version = bytes.get(28..30).map_or(0, |v| u16::from_le_bytes([v[0], v[1]]));
     if !(400..500).contains(&version) {
         let text = String::from_utf8_lossy(bytes.get(8..16).unwrap_or_default());
@@ -41,7 +47,9 @@ pub fn parse(bytes: &[u8]) -> Result<Content, Remark> {
     }
     let mut file = File::new(bytes);
     let mut content = Content::default();
-    let header = file.block(64, b"##HD").ok_or_else(|| fails("has no header where MDF 4 has it"))?;
+    let header = file.block(HEAD_BYTES, b"##HD");
+    let no_header = || file.cut().unwrap_or_else(|| "has no header where MDF 4 has it".to_owned());
+    let header = header.ok_or_else(|| Remark::of_file(no_header()))?;
     let mut next = header.link(0);
     while let Some(at) = next {
         let Some(found) = file.once(at, b"##DG") else {
@@ -56,6 +64,8 @@ pub fn parse(bytes: &[u8]) -> Result<Content, Remark> {
     if file.unfinished {
         let what = "was not finished, as when a logger's power goes; read up to its last whole record";
         content.remarks.insert(0, Remark::of_file(what.to_owned()));
+    } else if let Some(what) = file.cut() {
+        content.remarks.insert(0, Remark::of_file(what));
     }
     match content.groups.is_empty() && content.frames.is_empty() {
         true => Err(content

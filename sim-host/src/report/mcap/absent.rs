@@ -23,7 +23,7 @@ impl<W: Write + Seek> Recorder<W> {
     ///
     /// # Errors
     /// None.
-    pub fn write(&mut self, _: f64, _: &impl Serialize) -> Result<(), McapError> {
+    pub fn write(&mut self, _: f64, _: &impl Serialize) -> Result<bool, McapError> {
         match self.0 {}
     }
 

@@ -8,6 +8,7 @@ use schemars::{JsonSchema, schema_for};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::io::{Seek, Write};
 
 /// Rows between two chunks: what a killed program loses at most.
@@ -42,11 +43,11 @@ impl<W: Write + Seek> Recorder<W> {
         Ok(Self { writer, channel, rows: 0 })
     }
 
-    /// Adds a row at a time \[s\]; a negative one counts as 0.
+    /// Adds a row at a time \[s\]; a negative one counts as 0. True if the file then ends with a whole chunk.
     ///
     /// # Errors
     /// The file cannot be written.
-    pub fn write(&mut self, time_s: f64, row: &impl Serialize) -> Result<(), McapError> {
+    pub fn write(&mut self, time_s: f64, row: &impl Serialize) -> Result<bool, McapError> {
         // By the text, so that an f32 has its own digits.
         let text = serde_json::to_string(row).map_err(failed)?;
         let mut row: Value = serde_json::from_str(&text).map_err(failed)?;
@@ -58,10 +59,11 @@ impl<W: Write + Seek> Recorder<W> {
             MessageHeader { channel_id: self.channel, sequence: self.rows, log_time, publish_time: log_time };
         self.writer.write_to_known_channel(&header, row.to_string().as_bytes()).map_err(failed)?;
         self.rows = self.rows.wrapping_add(1);
-        if self.rows.is_multiple_of(CHUNK_ROWS) {
+        let whole = self.rows.is_multiple_of(CHUNK_ROWS);
+        if whole {
             self.writer.flush().map_err(failed)?;
         }
-        Ok(())
+        Ok(whole)
     }
 
     /// Closes the file.
@@ -73,8 +75,11 @@ impl<W: Write + Seek> Recorder<W> {
     }
 }
 
-fn failed(error: impl std::fmt::Display) -> McapError {
-    McapError::Write(error.to_string())
+/// The cause of an error: the text of the outermost one does not tell that of the system.
+fn failed(error: impl Error + 'static) -> McapError {
+    let first: &(dyn Error + 'static) = &error;
+    let cause = std::iter::successors(Some(first), |error| (**error).source()).last();
+    McapError::Write(cause.unwrap_or(first).to_string())
 }
 
 /// The JSON schema of a flat row: per key its type, as one word, and its description with the unit. Foxglove accepts no
