@@ -2,10 +2,13 @@
 
 use super::conditions::{printed, setup};
 use super::options::{Chosen, Fmu};
-use super::outputs::print;
+use super::outputs::{complain, print};
 use super::{Ended, Failure};
+use crate::commands::Setup;
 use crate::fmu::{Part, Version, archive, library, model};
 use crate::report::output::Output;
+use crate::scenario::Scenario;
+use serde_json::Value;
 use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "\
@@ -42,6 +45,12 @@ pub(super) struct Args {
     scenario: Chosen<Fmu>,
 }
 
+/// The model of a part, as in its FMU; `None` if the scenario has none.
+fn model_of(part: Part, scenario: &Scenario) -> Option<Value> {
+    let setup = Setup::new(scenario).ok()?;
+    serde_json::to_value(model(part, &setup).ok()?).ok()
+}
+
 pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     let Command::Export(args) = command;
     let scenario = args.scenario.scenario()?;
@@ -50,6 +59,11 @@ pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     }
     let setup = setup(&scenario)?;
     let model = model(args.part, &setup)?;
+    let made = |scenario: &Scenario| model_of(args.part, scenario);
+    let judged = |name: &str| !args.part.options().contains(&name);
+    for name in args.scenario.idle(judged, made)? {
+        complain(&format!("warning: --{name} has no effect on the FMU {}", args.part.name()));
+    }
     let path = args.out.clone().unwrap_or_else(|| format!("{}.fmu", args.part.name()).into());
     let output = Output::create(&path)?;
     let fmu = archive(args.fmi, args.part, (&model, &setup.scenario), &library(args.library.as_deref())?)?;

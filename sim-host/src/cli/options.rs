@@ -186,6 +186,12 @@ impl<S> Options<S> {
         }
         self.given.iter().try_for_each(|given| given.apply(scenario)).map_err(|error| error.to_string())
     }
+
+    /// The options without those of a name.
+    fn without(&self, name: &str) -> Self {
+        let given = self.given.iter().filter(|given| given.setting.name != name).cloned().collect();
+        Self { given, of: PhantomData }
+    }
 }
 
 impl Options<Bicycle> {
@@ -269,6 +275,37 @@ impl<S: Settings> Chosen<S> {
         let mut scenario = self.file.read()?;
         self.options.apply(&mut scenario)?;
         Ok(scenario)
+    }
+
+    /// The names of the given options that have no effect on what `made` makes of the scenario, in the order of the options; of
+    /// those that `judged` names.
+    ///
+    /// # Errors
+    /// The file or an option is wrong.
+    #[cfg(feature = "fmu")]
+    pub(super) fn idle<M: PartialEq>(
+        &self,
+        judged: impl Fn(&str) -> bool,
+        made: impl Fn(&Scenario) -> Option<M>,
+    ) -> Result<Vec<&'static str>, Failure> {
+        let of = |options: &Options<S>| -> Result<Option<M>, Failure> {
+            let mut scenario = self.file.read()?;
+            Ok(options.apply(&mut scenario).ok().and_then(|()| made(&scenario)))
+        };
+        let mut kept = Options { given: self.options.given.clone(), of: PhantomData };
+        let whole = of(&kept)?;
+        let mut names: Vec<&'static str> = kept.given.iter().map(|given| given.setting.name).collect();
+        names.dedup();
+        let mut idle = Vec::new();
+        // Backwards, as an option can need an earlier one: the rider's gains a rider.
+        for name in names.into_iter().rev().filter(|name| judged(name)) {
+            let fewer = kept.without(name);
+            if of(&fewer)? == whole {
+                kept = fewer;
+                idle.insert(0, name);
+            }
+        }
+        Ok(idle)
     }
 }
 

@@ -3,9 +3,9 @@
 use super::interrupt;
 use super::outputs::{Further, OutputArgs, Outputs, Results, complain, complain_once};
 use super::scenario_error::failure;
-use super::{Ended, Failure};
+use super::{Ended, Failure, UsageError};
 use crate::commands::CommandError;
-use crate::commands::replay::{Replay, ReplayChoice, ReplayedRecording};
+use crate::commands::replay::{Replay, ReplayChoice, ReplayedRecording, is_frames};
 use crate::replay::{CauseRecord, Press, Resample, Summary};
 use crate::report::figure::{self, ReplayFigure};
 use crate::report::replay::{ReplaysDocument, summary_text, text};
@@ -49,12 +49,12 @@ pub(super) struct Args {
     /// Between two samples: hold the older, or interpolate [default: the map's]
     #[arg(long)]
     resample: Option<Resample>,
-    /// Longest time between two samples that is interpolated, in seconds
-    #[arg(long, value_name = "S", default_value_t = 0.5, value_parser = positive)]
-    longest_gap: f64,
-    /// When to press the switch in a recording without one
-    #[arg(long, default_value = "again")]
-    press: Press,
+    /// Longest time between two samples that is interpolated, in seconds [default: 0.5]
+    #[arg(long, value_name = "S", value_parser = positive)]
+    longest_gap: Option<f64>,
+    /// When to press the switch in a recording without one [default: again]
+    #[arg(long)]
+    press: Option<Press>,
     /// Defaults of the parameters
     #[arg(long, default_value = "product")]
     preset: Preset,
@@ -74,7 +74,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
     fault: Vec<String>,
     /// Seed of the faults' noise and dropouts
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "fault")]
     seed: u64,
     /// Time between two rows of the table, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = positive)]
@@ -95,7 +95,34 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Rejects options that have no effect on the recordings.
+fn refuse_idle(args: &Args) -> Result<(), UsageError> {
+    if args.resample == Some(Resample::Hold) && args.longest_gap.is_some() {
+        return Err(UsageError(
+            "--longest-gap is for --resample interpolate: nothing is interpolated".into(),
+        ));
+    }
+    if !args.files.iter().all(|file| is_frames(file)) {
+        return Ok(());
+    }
+    let of_samples = [
+        ("--map", args.map.is_some()),
+        ("--dbc", !args.dbc.is_empty()),
+        ("--strict", args.strict),
+        ("--resample", args.resample.is_some()),
+        ("--longest-gap", args.longest_gap.is_some()),
+        ("--press", args.press.is_some()),
+        ("--fault", !args.fault.is_empty()),
+    ];
+    let Some((option, _)) = of_samples.into_iter().find(|(_, given)| *given) else { return Ok(()) };
+    let file = args.files[0].display();
+    Err(UsageError(format!(
+        "{option} acts on recordings of samples; {file} has frames, which are replayed bit for bit"
+    )))
+}
+
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
+    refuse_idle(args)?;
     if args.files.len() > 1 {
         args.outputs.refuse_figures("a figure is of one recording only")?;
         if args.frames.is_some() {
@@ -132,13 +159,14 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
 
 /// The choices of the options.
 fn choice(args: &Args) -> ReplayChoice {
+    let defaults = ReplayChoice::default();
     ReplayChoice {
         map: args.map.clone(),
         dbc: args.dbc.clone(),
         strict: args.strict,
         resample: args.resample,
-        longest_gap_s: args.longest_gap,
-        press: args.press,
+        longest_gap_s: args.longest_gap.unwrap_or(defaults.longest_gap_s),
+        press: args.press.unwrap_or(defaults.press),
         preset: args.preset,
         law: args.law.clone(),
         bicycle: args.bicycle.clone(),

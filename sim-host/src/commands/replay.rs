@@ -181,7 +181,7 @@ impl Replay {
     /// As of [`Self::file`].
     pub fn file_until(&self, path: &Path, stop: &dyn Fn() -> bool) -> Result<ReplayedRecording, Failure> {
         let name = path.display().to_string();
-        if path.extension().is_some_and(|extension| extension == "frames") {
+        if is_frames(path) {
             return self.frames(path, name, stop);
         }
         let choice = &self.choice;
@@ -269,6 +269,11 @@ impl Replay {
             parameters: parameters::departing(plan.config(), &base(choice.preset)).into_iter().collect(),
         }
     }
+}
+
+/// Whether a recording is one of frames, by its name, not of samples.
+pub fn is_frames(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "frames")
 }
 
 /// The configuration that a preset starts from.

@@ -28,6 +28,40 @@ impl Part {
             Self::Rider => "rider",
         }
     }
+
+    /// The options that describe it, by their names; others can have an effect by chance only, such as a rider's delay on the
+    /// time step.
+    pub const fn options(self) -> &'static [&'static str] {
+        match self {
+            Self::Controller => &[
+                "bicycle",
+                "bicycle-set",
+                "law",
+                "preset",
+                "assist",
+                "schedule-speed",
+                "torque-limit",
+                "rate-limit",
+                "taper",
+                "parameters",
+                "set",
+                "speed",
+            ],
+            Self::Bicycle => &[
+                "bicycle",
+                "bicycle-set",
+                "sensor",
+                "actuator",
+                "imu",
+                "fall",
+                "time-limit",
+                "speed",
+                "steer-rate",
+                "roll-rate",
+            ],
+            Self::Rider => &["rider", "gains", "delay", "gains-outside", "schedule-speed"],
+        }
+    }
 }
 
 /// A scenario that has no such FMU.

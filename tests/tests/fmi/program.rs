@@ -29,6 +29,41 @@ fn refused_exports() {
     assert_eq!(bench.files(), [""; 0]);
 }
 
+/// Situation: options of other parts. Action: export each part with them, and with what describes it.
+/// Must hold: a warning for each option that changes nothing in this FMU, with its name and the FMU's; none for one that does, also where
+/// it describes another part, such as a rider's delay that sets the time step.
+#[test]
+fn options_without_effect_are_told() {
+    let bench = bench();
+    for (line, idle) in [
+        ("controller --law h --speed 4 --torque-limit 5", &[][..]),
+        (
+            "controller --law h --rider smart --delay 30ms --steer-rate 5 --speed 4 --fall roll=30deg",
+            &["rider", "delay", "fall", "steer-rate"],
+        ),
+        ("controller --time-limit 9 --imu body --seed 4", &["seed", "imu", "time-limit"]),
+        ("bicycle --speed 4 --steer-rate 5 --imu body --time-limit 9", &[]),
+        (
+            "bicycle --law f --torque-limit 5 --recovered-below 0.2",
+            &["law", "torque-limit", "recovered-below"],
+        ),
+        ("bicycle --set rate_hz=500", &[]),
+        ("rider --rider smart --delay 30ms", &[]),
+        ("rider --rider smart --speed 4 --preset product --taper 1:2", &["preset", "taper", "speed"]),
+    ] {
+        let run = bench.run(&format!("fmu export {line}"));
+        assert_eq!(run.code, Some(0), "{line}: {run:?}");
+        let part = line.split(' ').next().unwrap();
+        let expected: String = idle
+            .iter()
+            .map(|name| format!("warning: --{name} has no effect on the FMU {part}\n"))
+            .collect();
+        let told: String =
+            run.stderr.split_inclusive('\n').filter(|line| line.contains("has no effect on the FMU")).collect();
+        assert_eq!(told, expected, "{line}");
+    }
+}
+
 /// Situation: one scenario. Action: export twice, for both versions. Must hold: the same bytes for the same version, other bytes
 /// for the other, and an answer with the number of variables.
 #[test]

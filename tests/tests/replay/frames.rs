@@ -61,5 +61,20 @@ fn frames_that_are_none() {
         bench.run("replay half.frames").rejected_naming(&["half.frames", size, "81 bytes"]);
     }
     bench.write("half.frames", [0; 81]);
-    bench.run("replay half.frames --fault gyro:flip@1s").rejected_naming(&["half.frames", "--fault"]);
+    for (option, value) in [
+        ("--fault", " gyro:flip@1s"),
+        ("--map", " extract"),
+        ("--dbc", " no.dbc"),
+        ("--strict", ""),
+        ("--resample", " hold"),
+        ("--longest-gap", " 1"),
+        ("--press", " once"),
+    ] {
+        let run = bench.run(&format!("replay half.frames {option}{value}"));
+        assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""), "{option}: {run:?}");
+        assert!(run.stderr.contains("half.frames") && run.stderr.contains(option), "{}", run.stderr);
+    }
+    for line in ["ride.csv --seed 3", "ride.csv --resample hold --longest-gap 1"] {
+        assert_eq!(bench.run(&format!("replay {line}")).code, Some(2), "{line}");
+    }
 }
