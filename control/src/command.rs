@@ -6,6 +6,7 @@ use crate::safety::limits::ActiveLimits;
 
 /// Requested motor torque and the reasons for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct Command {
     /// Steer torque in the motor's sign ([`crate::Calibration::motor_reversed`]) \[N m\]. Always finite.
     pub torque_nm: f32,

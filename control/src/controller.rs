@@ -23,6 +23,7 @@ use crate::sensors::validation::{self, ValidationState};
 ///
 /// The field order in memory matters, the long history last: the chip reaches the first 1 KiB in fewer instructions.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 #[repr(C)]
 pub struct State {
     /// Time of the previous frame \[us\].
@@ -48,6 +49,7 @@ pub struct State {
 
 /// Estimated roll angle and its error, and the specific force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct Roll {
     /// Roll angle, right positive \[rad\].
     pub angle_rad: f32,

@@ -8,6 +8,7 @@ macro_rules! causes {
         /// Reason why torque is forbidden or reduced, or a condition that is only reported. The number is the code
         /// shown to users.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
         #[repr(u8)]
         pub enum Cause {
             $(#[doc = $meaning] $name = $code,)*
@@ -164,6 +165,7 @@ impl Cause {
 
 /// A set of causes, bit *n* for code *n*. [`crate::wire`] encodes it with room for codes up to 127.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct Causes(pub u64);
 
 const _: () = assert!(

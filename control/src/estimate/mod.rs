@@ -82,6 +82,7 @@ pub struct Motion {
 
 /// Error of the roll angle, in parts from which [`RollError::bound_rad`] is computed only where needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct RollError {
     /// Random part: three standard deviations, squared \[rad^2\].
     pub square_rad2: f32,
@@ -107,6 +108,7 @@ impl RollError {
 
 /// State of the estimator.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct EstimateState {
     /// `None` before the first step and after a gap.
     running: Option<Running>,
@@ -117,6 +119,7 @@ pub struct EstimateState {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 struct Running {
     roll: Roll,
     /// Unexplained lateral force before lever arm terms, smoothed \[m/s^2\].

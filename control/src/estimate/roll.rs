@@ -14,6 +14,7 @@ const UNKNOWN_RAD2: f32 = 1.0;
 
 /// Filter state: the estimates and the covariance of their errors.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub(super) struct Roll {
     /// Roll \[rad\].
     pub(super) angle_rad: f32,

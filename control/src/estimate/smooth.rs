@@ -64,6 +64,7 @@ impl SmoothPlan {
 
 /// State of the smoothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct SmoothState {
     /// Age of the gyro's sample in the previous period \[control periods\].
     age_ticks: u16,

@@ -12,6 +12,7 @@ const FUSED_S: f32 = 0.2;
 /// a correction from the encoder; without a rate sensor the correction is the whole rate, `lag` seconds late. Backward
 /// Euler: stable at any sampling rate.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub(super) struct Steer {
     angle_rad: f32,
     /// Correction of the rate sensor \[rad/s\].

@@ -135,6 +135,7 @@ impl PathTracking {
 
 /// Deviation from the path. Positive: to the right of the path, heading to the right of it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct PathError {
     /// Heading less the path's direction \[rad\].
     pub heading_rad: f32,
@@ -169,6 +170,7 @@ pub struct TrackingInput {
 
 /// State of path tracking. The default is one that has not followed a path yet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct PathTrackingState {
     path: PathError,
     integral_m_s: f32,

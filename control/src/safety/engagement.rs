@@ -14,6 +14,7 @@ use core::hint::cold_path;
 crate::numbered! {
     /// Mode of the controller. The discriminant is its number on the wire.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+    #[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
     pub enum Mode {
         /// Before the first step.
         #[default]
@@ -193,6 +194,7 @@ impl Reactions {
 
 /// State of the engagement logic.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct EngagementState {
     mode: Mode,
     /// Control periods in this mode.
@@ -241,6 +243,7 @@ pub struct EngagementInput {
 /// Debounced causes of the bicycle's position and motion: set after more than `persist_ticks` periods of presence,
 /// cleared after as many of absence.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 struct Debounced {
     active: Causes,
     /// Time for which each cause has differed from its debounced state \[control periods\].

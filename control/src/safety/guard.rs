@@ -90,6 +90,7 @@ impl GuardPlan {
 
 /// State of the guard: the torque that was output. `GuardState::default()` is that of a torque that has long been zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct GuardState {
     torque_nm: f32,
     /// Timer of the handlebar turning against the torque \[us\].

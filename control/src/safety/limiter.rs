@@ -63,6 +63,7 @@ impl LimiterPlan {
 /// State of the limiter. `LimiterState::default()` is that of a torque that has long been zero; it must be set to the
 /// default whenever the motor receives zero instead of the limiter's torque.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct LimiterState {
     torque_nm: f32,
     /// Timer of the handlebar turning against the torque \[us\].
@@ -251,6 +252,7 @@ const PARTS: usize = 9;
 
 /// Torques within the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 struct WindowHistory {
     /// Smallest magnitude of the torque in each part of the window \[N m\]; zero in parts on the other side of zero,
     /// because the torque has then been zero within the window.

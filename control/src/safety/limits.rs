@@ -276,6 +276,7 @@ impl SpeedCap {
 
 /// Set of the limits that changed the torque in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct ActiveLimits(pub u16);
 
 impl ActiveLimits {

@@ -57,6 +57,7 @@ impl Press {
 
 /// Time for which the switch was open, and has been closed since. The default is a switch that was never open.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct PressState {
     open_ticks: u16,
     closed_ticks: u16,

@@ -139,6 +139,7 @@ impl CrossCheckPlan {
 
 /// State of the cross-checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct CrossCheckState {
     wheels: Debounce,
     yaw: Debounce,
@@ -214,6 +215,7 @@ struct Yaw {
 
 /// Residuals of the cross-checks; NaN where a sensor is missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct Residuals {
     /// Wheel speeds, see [`CrossCheckConfig::wheels_m_s`].
     pub wheels_m_s: f32,
@@ -235,6 +237,7 @@ impl Default for Residuals {
 
 /// Counts how long a residual persists \[control periods\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 struct Debounce(u16);
 
 impl Debounce {

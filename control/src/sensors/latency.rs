@@ -31,6 +31,7 @@ impl Latency {
 
 /// Inputs of the law at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct Aligned {
     /// Roll rate \[rad/s\].
     pub roll_rate_rad_s: f32,
@@ -40,6 +41,7 @@ pub struct Aligned {
 
 /// Valid values of the last periods, without gaps.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct History {
     recent: [Aligned; CAPACITY],
     /// Index of the newest value in the ring; the previous one is at the index before it.

@@ -5,6 +5,7 @@ use crate::sensors::monitor::CheckedSample;
 
 /// Bounds of a speed, and its newest sample \[m/s\].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct SpeedInterval {
     /// Lower bound.
     pub low: f32,

@@ -142,6 +142,7 @@ impl SensorPlan {
 
 /// State of the monitor of a sensor with `N` axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct SensorMonitor<const N: usize> {
     /// The last good sample.
     value: [f32; N],

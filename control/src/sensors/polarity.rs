@@ -11,6 +11,7 @@ use crate::sensors::validation::ValidationConfig;
 crate::numbered! {
     /// Next step of the polarity check.
     #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    #[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
     pub enum PolarityStep {
         /// Lean the bicycle to the right, by a quarter of a radian or more.
         #[default]
@@ -43,6 +44,7 @@ pub const GAIN_SPEED_M_S: f32 = 4.0;
 
 /// State of the polarity check.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct PolarityState {
     /// Next step of the polarity check.
     pub next: PolarityStep,

@@ -8,6 +8,7 @@ use core::hint::cold_path;
 
 /// Newest samples of a wheel's speed.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub(super) struct Recent {
     /// Samples before the newest in a ring, NaN where there was none; `next` is the index of the next sample.
     samples: [f32; MAX_RECENT_SAMPLES - 1],

@@ -47,6 +47,7 @@ impl SlopePlan {
 
 /// State of the regression.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct Slope {
     expected: f32,
     measured: f32,
@@ -86,6 +87,7 @@ impl Slope {
 
 /// Means over short blocks of control periods, and of the previous block.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct BlockMean<const N: usize> {
     sums: [f32; N],
     periods: u16,

@@ -139,6 +139,7 @@ impl SignCheckPlan {
 
 /// State of the sign check.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct SignCheckState {
     gyro_tick: u16,
     motor_tick: u16,

@@ -229,6 +229,7 @@ sensor_causes!(PATH, PathLost, PathLost, PathLost, PathLost);
 
 /// Monitors of all sensors, and the previous frame.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub struct ValidationState {
     gyro: SensorMonitor<3>,
     accel: SensorMonitor<3>,
@@ -263,6 +264,7 @@ impl ValidationState {
 
 /// Values of the previous frame whose change shows motion; NaN is unknown.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 struct Previous {
     steer_rad: f32,
     front_wheel_m_s: f32,

@@ -3,8 +3,8 @@
 use crate::parameters;
 use crate::variable::{Kind, Role, Variable};
 use control::law::gain_schedule::GainSchedule;
-use control::wire::{CONFIG_BYTES, FRAME_BYTES, decode_config, decode_frame, encode_frame};
-use control::{CAUSES, Command, Config, LIMITS, Law, Mode, Plan, SensorFrame, step};
+use control::wire::{CONFIG_BYTES, decode_config};
+use control::{CAUSES, Command, Config, LIMITS, Law, Mode, Plan, State, step};
 use motion::plant::{Held, Measured, Sensor};
 use motion::ride::{Engaged, clock_us, engaged, frame_of};
 use std::sync::LazyLock;
@@ -137,14 +137,19 @@ pub(crate) struct Controller {
     config: Config,
     g_m_s2: f64,
     running: Option<(Plan, Engaged)>,
-    /// Every frame since the start: what a serialized state consists of, because the control crate's state follows from it and
-    /// no damaged bytes can make another one.
-    frames: Vec<u8>,
+}
+
+/// A serialized state.
+#[derive(bitcode::Encode, bitcode::Decode)]
+struct Stored {
+    state: State,
+    ticks: u32,
+    command: Command,
 }
 
 impl Controller {
     pub(crate) fn new(configuration: &str, g_m_s2: f64) -> Result<Self, String> {
-        Ok(Self { config: decoded(configuration)?, g_m_s2, running: None, frames: Vec::new() })
+        Ok(Self { config: decoded(configuration)?, g_m_s2, running: None })
     }
 
     /// Boots with the parameters, and engages if they say so.
@@ -160,13 +165,13 @@ impl Controller {
         config.law = Law::numbered(law as u8, slope as f32, points).unwrap_or_default();
         let plan = config.plan().map_err(|e| e.to_string())?;
         let start = if warm == 1.0 { engaged(&plan, speed_m_s, self.g_m_s2) } else { Engaged::boot() };
-        (self.running, self.frames) = (Some((plan, start)), Vec::new());
+        self.running = Some((plan, start));
         Ok(())
     }
 
     /// One control period.
     pub(crate) fn step(&mut self, inputs: &[f64]) {
-        let Some((plan, now)) = &self.running else { return };
+        let Some((plan, now)) = &mut self.running else { return };
         let mut inputs = inputs.iter().copied();
         let mut next = || inputs.next().unwrap_or(f64::NAN);
         let held = Sensor::ALL.map(|sensor| {
@@ -176,15 +181,8 @@ impl Controller {
             Held { value, age_ticks: next() as u16 }
         });
         let frame = frame_of(plan, &Measured::new(held, clock_us(plan, now.ticks), next() == 1.0));
-        self.frames.extend(encode_frame(&frame));
-        self.control(&frame);
-    }
-
-    fn control(&mut self, frame: &SensorFrame) {
-        if let Some((plan, now)) = &mut self.running {
-            now.command = step(plan, &mut now.state, frame);
-            now.ticks = now.ticks.wrapping_add(1);
-        }
+        now.command = step(plan, &mut now.state, &frame);
+        now.ticks = now.ticks.wrapping_add(1);
     }
 
     pub(crate) fn outputs(&self, to: &mut [f64]) {
@@ -204,18 +202,21 @@ impl Controller {
         to.iter_mut().zip(numbers.into_iter().chain(present)).for_each(|(to, value)| *to = value);
     }
 
+    /// The state, of the same size at any time.
     pub(crate) fn bytes(&self) -> Vec<u8> {
-        self.frames.clone()
+        self.running.as_ref().map_or_else(Vec::new, |(_, now)| {
+            let Engaged { state, ticks, command } = now.clone();
+            bitcode::encode(&Stored { state, ticks, command })
+        })
     }
 
-    /// Runs the frames of a serialized state; [`Controller::begin`] has been called.
+    /// Restores a state; [`Controller::begin`] has been called.
     pub(crate) fn load(&mut self, bytes: &[u8]) -> Result<(), String> {
-        let (frames, rest) = bytes.as_chunks::<FRAME_BYTES>();
-        if !rest.is_empty() {
-            return Err("the frames are cut".into());
-        }
-        frames.iter().for_each(|frame| self.control(&decode_frame(frame)));
-        self.frames = bytes.into();
+        let decoded =
+            bitcode::decode(bytes).map_err(|e| format!("the controller's state can't be decoded: {e}"));
+        let Stored { state, ticks, command } = decoded?;
+        let Some((_, now)) = &mut self.running else { return Err("the controller has not begun".into()) };
+        *now = Engaged { state, ticks, command };
         Ok(())
     }
 }

@@ -3,3 +3,4 @@
 mod c_interface;
 mod fmpy;
 mod program;
+mod states;

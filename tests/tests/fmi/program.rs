@@ -54,12 +54,13 @@ fn options_without_effect_are_told() {
         let run = bench.run(&format!("fmu export {line}"));
         assert_eq!(run.code, Some(0), "{line}: {run:?}");
         let part = line.split(' ').next().unwrap();
-        let expected: String = idle
-            .iter()
-            .map(|name| format!("warning: --{name} has no effect on the FMU {part}\n"))
+        let expected: String =
+            idle.iter().map(|name| format!("warning: --{name} has no effect on the FMU {part}\n")).collect();
+        let told: String = run
+            .stderr
+            .split_inclusive('\n')
+            .filter(|line| line.contains("has no effect on the FMU"))
             .collect();
-        let told: String =
-            run.stderr.split_inclusive('\n').filter(|line| line.contains("has no effect on the FMU")).collect();
         assert_eq!(told, expected, "{line}");
     }
 }

@@ -18,6 +18,7 @@ const MAX_CHANGE_M_S: f32 = 2.5;
 /// Samples of gyro, accelerometer and the other sensors at the last check, and the number of consecutive checks with
 /// equal samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub(super) struct Repeats {
     gyro_rad_s: [f32; 3],
     accel_m_s2: [f32; 3],

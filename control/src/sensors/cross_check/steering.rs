@@ -42,6 +42,7 @@ const STANDING_M_S: f32 = 0.3;
 
 /// State of motion by the wheel speed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 enum WheelState {
     /// Ridden.
     Riding,
@@ -105,6 +106,7 @@ impl SteeringPlan {
 
 /// State of the steering checks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]
 pub(super) struct Steering {
     /// Block means of expected yaw rate, measured yaw rate and roll rate.
     block: BlockMean<3>,
