@@ -3,7 +3,7 @@
 use super::basin::{BasinArgs, write};
 use super::board_args::BoardArgs;
 use super::conditions::{printed, setup};
-use super::outputs::Further;
+use super::outputs::{Further, complain};
 use super::progress::progress;
 use super::scenario_error::named;
 use super::{Ended, Failure, interrupt};
@@ -34,7 +34,15 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let BasinArgs { scenario: chosen, threads, netcdf, outputs } = &args.basin;
     let mut scenario = chosen.scenario()?;
+    let draws = scenario.uncertain.is_some() || scenario.rider_draws.is_some();
+    if draws || scenario.search.adaptive_speeds.is_some() {
+        complain(
+            "note: on boards there are no draws and no added speeds (uncertain, rider-draws, adaptive-speeds)",
+        );
+    }
     (scenario.uncertain, scenario.rider_draws, scenario.search.adaptive_speeds) = (None, None, None);
+    // Every ride of a board is exact.
+    scenario.search.method = Method::Plain;
     if let Some(ended) = printed(chosen, &scenario)? {
         return Ok(ended);
     }
@@ -64,7 +72,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let mut same = Ok(());
     if args.board.compare && !result.columns.is_empty() {
         let speeds = result.columns.iter().map(|column| column.speed).collect();
-        let done = Search { speeds, method: Method::Plain, ..searched.clone() };
+        let done = Search { speeds, ..searched.clone() };
         let here = pool.install(|| basin(&setup.conditions, &done, |_| (), || false))?;
         same = same_basin(&here, &result);
         if same.is_ok() {

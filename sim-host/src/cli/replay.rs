@@ -70,7 +70,8 @@ pub(super) struct Args {
     /// Any parameter of the firmware, for example cross.yaw_rad_s=1; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
-    /// Inject a fault into the recorded data, for example gyro:flip@2s; may be repeated
+    /// Inject a fault into the recorded data, for example gyro:flip@2s; may be repeated. CHANNEL and KIND are those of `ride`
+    /// (`ride --help`); a CHANNEL alone lists its kinds
     #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
     fault: Vec<String>,
     /// Seed of the faults' noise and dropouts

@@ -9,9 +9,9 @@ use crate::commands::Setup;
 use crate::commands::ride::{self, Ridden};
 use crate::report::figure::{self, RideFigure};
 use crate::report::{mcap, netcdf, table, terminal};
-use crate::ride::{Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, frames};
-use control::SensorFrame;
+use crate::ride::{Conditions, FallCause, FallCriterion, LaidFlat, Ride, Start, TracePoint, frames};
 use control::wire::encode_frame;
+use control::{Causes, SensorFrame};
 use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -94,7 +94,7 @@ pub(super) fn write(
     outputs.write(Results {
         document: &document,
         config: &config,
-        summary: || terminal::ride(&figure, 80) + &summary(ride, &setup.conditions) + extra,
+        summary: || terminal::ride(&figure, 80) + &summary(ride, &setup.conditions) + &caused(trace) + extra,
         table: || table::table(&config, trace),
         figure: || figure::ride(&figure),
     })?;
@@ -136,6 +136,20 @@ fn summary(ride: &Ride, conditions: &Conditions) -> String {
         );
     }
     text
+}
+
+/// The causes that the controller reported, each with the time of the first; empty if there were none.
+fn caused(trace: &[TracePoint]) -> String {
+    let mut known = Causes::NONE;
+    let mut first = Vec::new();
+    for point in trace {
+        let present = Causes(point.causes);
+        first.extend(present.iter().filter(|cause| !known.has(*cause)).map(|cause| (cause, point.t)));
+        known = Causes(known.0 | present.0);
+    }
+    let each = first.iter().map(|(cause, t)| format!("{} {} from {t:.3} s", cause.code(), cause.name()));
+    let each: Vec<String> = each.collect();
+    if each.is_empty() { String::new() } else { format!("causes: {} (docs/faults)\n", each.join(", ")) }
 }
 
 /// Two digits after the decimal point; zero without a sign.

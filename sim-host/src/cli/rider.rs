@@ -172,13 +172,28 @@ fn errors(text: &mut String, table: &RiderTable) {
     for row in &table.rows {
         let errors = standard_errors(table, row);
         let gain = |&i: &usize| match &errors {
-            Some(errors) => format!("  {} {:.4} +/- {:.2}", KEYS[i], row.gains.0[i], errors[KEYS[i]]),
+            Some(errors) => {
+                let digits = decimals(errors[KEYS[i]]).max(2);
+                format!(
+                    "  {} {:.*} +/- {:.*}",
+                    KEYS[i],
+                    digits.max(4),
+                    row.gains.0[i],
+                    digits,
+                    errors[KEYS[i]]
+                )
+            }
             None => format!("  {} {:.4}", KEYS[i], row.gains.0[i]),
         };
         let run = row.run.map_or(String::new(), |run| format!(", run {run}"));
         let gains: String = table.columns.iter().map(gain).collect();
         let _ = writeln!(text, "# {} m/s{run}:{gains}", row.speed_m_s);
     }
+}
+
+/// Decimals that show two significant digits of a positive number.
+fn decimals(x: f64) -> usize {
+    if x > 0.0 { (1.0 - libm::floor(libm::log10(x))).clamp(0.0, 12.0) as usize } else { 0 }
 }
 
 /// A fit as comment lines.
@@ -200,7 +215,8 @@ fn comment(text: &mut String, fit: &FitEntry, columns: &[usize]) {
         let _ = writeln!(text, "# {key:10}{values}{r_squared}{line}");
         if let Some(spline) = &fit.spline {
             let error = |errors: &BTreeMap<_, Option<f64>>| {
-                errors[key].map_or("      none".into(), |error| format!(" {error:9.3}"))
+                errors[key]
+                    .map_or("      none".into(), |error| format!(" {error:9.*}", decimals(error).max(3)))
             };
             let errors: String = spline.standard_errors.iter().step_by(every).map(error).collect();
             let _ = writeln!(

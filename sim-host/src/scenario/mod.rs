@@ -13,6 +13,7 @@ mod named;
 pub mod parameter_file;
 mod plant;
 mod plant_error;
+mod repeats;
 mod resolve;
 mod rider;
 mod search;

@@ -5,7 +5,7 @@ use super::error::ScenarioError;
 use super::rider::LoadedRider;
 use super::setting::DRAWS;
 use super::ticks::{LONGEST_S, whole_ticks};
-use super::{AssistKind, Preset, Scenario, cut_files, law, parameter_file::ParameterFile};
+use super::{AssistKind, Preset, Scenario, cut_files, law, parameter_file::ParameterFile, repeats};
 use crate::bicycle::Geometry;
 use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::onboard::fit;
@@ -83,14 +83,20 @@ impl Scenario {
             notes.extend(off.iter().map(|reason| format!("{}: for the flashed code {reason}", given.name)));
             self.set_parameters(&mut config)?;
         }
+        let mut warnings =
+            rider.as_ref().map_or(Vec::new(), |one| compatibility_warnings(&bicycle, &one.table));
+        warnings.extend(cut_files::warnings(self.files()));
+        if flashed {
+            warnings.extend(repeats::warnings(&config, &plant.sensors));
+        }
+        if flashed && config.track.is_some() && !config.input.path.fitted {
+            notes.push("track is on without a path: it gives no torque (--set input.path.fitted=on)".into());
+        }
         let schedule_speed = self.scheduled_by(&config, flashed);
         let limited = config.limits != Limits::default();
         let assist = self.assist(&law, config, limited, &given.name)?;
         let sensor_delay_ticks = whole_ticks(self.sensor_delay_s, step_s, LONGEST_S)
             .map_err(|e| ScenarioError::value("sensor_delay_s", e))?;
-        let mut warnings =
-            rider.as_ref().map_or(Vec::new(), |one| compatibility_warnings(&bicycle, &one.table));
-        warnings.extend(cut_files::warnings(self.files()));
         let conditions = self.conditions(&bicycle, assist, rider.as_ref(), (step_s, plant));
         let conditions = Conditions { schedule_speed, sensor_delay_ticks, ..conditions };
         conditions.check()?;

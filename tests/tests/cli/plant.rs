@@ -80,6 +80,8 @@ fn wrong_options_name_the_allowed_ones() {
         ("--actuator voltage=24", &["given together"]),
         ("--actuator coulomb=5", &["over creep"]),
         ("--fault gyro:stuk", &["--fault", "gyro:stuk", "stuck, missing"]),
+        ("--fault x", &["--fault x", "gyro, accel, steer,", "engage, clock"]),
+        ("--fault motor", &["motor needs a kind", "dead, stuck, late=TIME"]),
         ("--assist ideal --fault gyro:stuck", &["only friction"]),
         ("--assist ideal --actuator gazelle", &["only friction"]),
     ] {
@@ -90,6 +92,77 @@ fn wrong_options_name_the_allowed_ones() {
     let run = bench.run("basin plane --speed 4 --fault gyro:stuck@1s");
     assert!(run.code == Some(1) && run.stderr.contains("mirrors"), "{}", run.stderr);
     assert_eq!(bench.run("ride --speed 4 --assist ideal --actuator davis").code, Some(0));
+}
+
+/// Situation: every channel of faults, named without a kind.
+/// Action: ride, and read the help.
+/// Must hold: the error lists the channel's kinds, and the help has each channel and each kind.
+#[test]
+fn the_help_lists_all_faults() {
+    let bench = Bench::new(PROGRAM);
+    let help = bench.run("ride --help").stdout;
+    let help = help.split("--fault ").nth(1).unwrap().split("--seed").next().unwrap().to_owned();
+    let words: Vec<&str> = help.split(|c: char| c.is_whitespace() || ",:()".contains(c)).collect();
+    for channel in sim_host::plant::Channel::all() {
+        let name = channel.name();
+        assert!(words.contains(&name), "{name}: {help}");
+        let run = bench.run(&format!("ride --speed 4 --fault {name}"));
+        assert_eq!(run.code, Some(1), "{run:?}");
+        let kinds = run.stderr.split("there are ").nth(1).unwrap_or_else(|| panic!("{run:?}")).trim();
+        assert!(kinds.split(", ").count() >= 3, "{kinds}");
+        for kind in kinds.split(", ") {
+            assert!(words.contains(&kind), "{name}: {kind}: {help}");
+        }
+    }
+}
+
+/// Situation: the flashed controller with a noisy gyro beside an exact accelerometer, a noisy steer angle beside an exact IMU, both with
+/// noise, all exact, and the published conditions without checks.
+/// Action: ride.
+/// Must hold: in the first two a warning names the exact sensors and their cause, and the text of the ride has this cause; neither in
+/// the others.
+#[test]
+fn an_exact_sensor_beside_a_noisy_one_is_told() {
+    let bench = Bench::new(PROGRAM);
+    for (options, exact) in [
+        ("--preset product --sensor gyro:noise=0.01", &["accel"][..]),
+        ("--preset product --sensor steer:noise=0.001", &["gyro", "accel"]),
+        ("--preset product --sensor gyro:noise=0.01 --sensor accel:noise=0.1", &[]),
+        ("--preset product", &[]),
+        ("--sensor gyro:noise=0.01", &[]),
+    ] {
+        let run = bench.run(&format!("ride --speed 4 --steer-rate 0.5 {options}"));
+        assert_eq!(run.code, Some(0), "{options}: {run:?}");
+        let warned: Vec<&str> = run.stderr.lines().filter(|line| line.contains("is exact beside")).collect();
+        assert_eq!(warned.len(), exact.len(), "{options}: {}", run.stderr);
+        for (warning, name) in warned.iter().zip(exact) {
+            let cause = if *name == "gyro" { "4 GyroStuck" } else { "8 AccelStuck" };
+            assert!(warning.contains(&format!("{name} is exact beside")), "{warning}");
+            assert!(warning.contains(&format!("cause {}", cause.replace(' ', ", "))), "{warning}");
+        }
+        let last = run.stdout.lines().last().unwrap();
+        assert_eq!(last.starts_with("causes: "), !exact.is_empty(), "{options}: {last}");
+        assert_eq!(last.contains("8 AccelStuck from 0.0"), !exact.is_empty(), "{options}: {last}");
+    }
+}
+
+/// Situation: path tracking with a path that is lost after 2 s, for each reaction to its loss; without a path.
+/// Action: ride.
+/// Must hold: the text names the cause and its time; with `note` the bicycle rides on, with `fault` it falls; without a path a note
+/// says that there is no tracking.
+#[test]
+fn a_lost_path_is_told() {
+    let bench = Bench::new(PROGRAM);
+    let ride = "ride --preset product --speed 4 --steer-rate 0.3 --set track=on --fault path:missing@2s";
+    for (loss, falls) in [("note", false), ("limp", false), ("fault", true)] {
+        let run = bench.run(&format!("{ride} --set input.path.fitted=on --set input.path.loss={loss}"));
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{loss}: {run:?}");
+        assert!(run.stdout.contains("causes: 56 PathLost from 2."), "{loss}: {}", run.stdout);
+        assert_eq!(run.stdout.contains("\nfallen after"), falls, "{loss}: {}", run.stdout);
+    }
+    let run = bench.run(ride);
+    assert!(run.stderr.contains("track is on without a path"), "{}", run.stderr);
+    assert!(!run.stdout.contains("causes:"), "{}", run.stdout);
 }
 
 /// Situation: options made of random parts of options.

@@ -297,7 +297,7 @@ fn list_show_and_check() {
 
 /// Situation: a table in which one set has a covariance, and a copy at other speeds.
 /// Action: show it, merge both.
-/// Must hold: standard errors beside that set's gains, as text, JSON and CSV; the text is a file with the covariance;
+/// Must hold: standard errors beside that set's gains, as text with two significant digits at least, JSON and CSV; the text is a file with the covariance;
 /// the merged table has all rows, and its groups are by speed.
 #[test]
 fn standard_errors_are_shown_and_tables_merged() {
@@ -310,6 +310,10 @@ fn standard_errors_are_shown_and_tables_merged() {
         "{shown}"
     );
     assert!(shown.contains("# 2 m/s, run 1:  K_phi_p 10.0000  K_delta_d -1.0000"), "{shown}");
+    bench.write("small.toml", format!("{TABLE}covariances = [[], [[4e-8, 0], [0, 0.00002]], [], []]\n"));
+    let small = bench.run("rider show small.toml").stdout;
+    let digits = "# 2.2 m/s, run 2:  K_phi_p 20.00000 +/- 0.00020  K_delta_d -2.0000 +/- 0.0045";
+    assert!(small.contains(digits), "{small}");
     bench.write("shown.toml", shown);
     let of = |file: &str| bench.json(&format!("rider show {file}"))["rows"].clone();
     assert_eq!(of("my.toml"), of("shown.toml"));

@@ -158,8 +158,20 @@ pub struct FaultTextError {
 #[non_exhaustive]
 pub enum FaultFormError {
     /// No channel and kind.
-    #[error("expected CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]], for example gyro.x:bias=0.1@1.5s..3s")]
+    #[error(
+        "expected CHANNEL[.AXIS]:KIND[=VALUE][@FROM[..TO]], for example gyro.x:bias=0.1@1.5s..3s; the channels are {}, and \
+         a channel alone lists its kinds",
+        channels()
+    )]
     Form,
+    /// A channel without a kind.
+    #[error("{channel} needs a kind of fault; there are {known}")]
+    NoKind {
+        /// The channel.
+        channel: &'static str,
+        /// The channel's kinds.
+        known: String,
+    },
     /// An axis of a kind that acts on whole samples.
     #[error("{0} acts on whole samples; leave out the axis")]
     WholeSamples(&'static str),
@@ -240,8 +252,16 @@ impl FromStr for Fault {
     }
 }
 
+/// The names of all channels.
+fn channels() -> String {
+    Channel::all().map(Channel::name).collect::<Vec<_>>().join(", ")
+}
+
 fn parsed(text: &str) -> Result<Fault, FaultFormError> {
-    let (place, what) = text.split_once(':').ok_or(FaultFormError::Form)?;
+    let Some((place, what)) = text.split_once(':') else {
+        let (channel, _) = placed(text).map_err(|_| FaultFormError::Form)?;
+        return Err(FaultFormError::NoKind { channel: channel.name(), known: channel.kinds().join(", ") });
+    };
     let (what, when) = what.split_once('@').map_or((what, None), |(what, when)| (what, Some(when)));
     let (channel, axis) = placed(place)?;
     let kind = kind(channel, what)?;
@@ -257,10 +277,9 @@ fn parsed(text: &str) -> Result<Fault, FaultFormError> {
 
 fn placed(text: &str) -> Result<(Channel, Option<u8>), FaultFormError> {
     let (name, axis) = text.split_once('.').map_or((text, None), |(name, axis)| (name, Some(axis)));
-    let channel = Channel::all().find(|channel| channel.name() == name).ok_or_else(|| {
-        let names: Vec<_> = Channel::all().map(Channel::name).collect();
-        FaultFormError::Channel { name: name.into(), known: names.join(", ") }
-    })?;
+    let channel = Channel::all()
+        .find(|channel| channel.name() == name)
+        .ok_or_else(|| FaultFormError::Channel { name: name.into(), known: channels() })?;
     let Some(axis) = axis else { return Ok((channel, None)) };
     let axes = channel.axes();
     let index = axes.iter().position(|known| *known == axis).ok_or_else(|| match axes {

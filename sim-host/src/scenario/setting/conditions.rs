@@ -166,7 +166,11 @@ pub const CONDITIONS: &[Setting] = &[
         key: "plant.faults",
         long_name: "injected faults",
         value: "CHANNEL:KIND@FROM..TO",
-        help: "Inject a fault, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated",
+        help: "Inject a fault, for example gyro.x:stuck@1.5s..2s or motor:dead@1s, or none; may be repeated. \
+               CHANNEL: gyro, accel, steer, steer-rate, front-wheel, rear-wheel, rider-torque, motor-report, path (KIND: stuck, \
+               missing, late=TIME, noise=X, bias=X, drift=X/s, scale=X, flip, jump=X, spike=X, nan, value=X, dropout=P, slow=TIME), \
+               motor (dead, stuck, late=TIME, noise=X, bias=X, drift=X/s, scale=X, flip, value=X, slow=TIME), engage (stuck, flip, \
+               value=X, missing), clock (stuck, scale=X, jump=X)",
         repeats: true,
         grammar: true,
         set: |s, text| {
