@@ -3,7 +3,8 @@
 
 use control::wire::FRAME_BYTES;
 use serde_json::Value;
-use tests::cli::Bench;
+use sim_host::report::output::Output;
+use tests::cli::{Bench, SmallDisk};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 const COMMANDS: [&str; 3] = [
@@ -134,6 +135,30 @@ fn a_full_disk_leaves_the_older_file() {
     assert_eq!((bench.files(), bench.read("old.json").as_str()), (vec!["old.json".into()], "older result"));
     let run = bench.shell(&format!("({full} --json) > out.json"));
     run.rejected_naming(&["standard output", "large"]);
+}
+
+/// Situation: a folder that is removed while a result is computed for it; a full file system.
+/// Action: write the result.
+/// Must hold: the error names the file and the missing folder, or "No space left", with no file left.
+#[test]
+fn a_lost_place_is_named() {
+    let bench = Bench::new(PROGRAM);
+    std::fs::create_dir(bench.path("there")).unwrap();
+    let output = Output::create(&bench.path("there/ride.json")).unwrap();
+    std::fs::remove_dir(bench.path("there")).unwrap();
+    let error = output.finish(b"{}").unwrap_err().to_string();
+    for words in ["can't write ", "there/ride.json: there is no folder ", "/there"] {
+        assert!(error.contains(words), "{words}: {error}");
+    }
+    let Some(_disk) = SmallDisk::mounted(bench.path("disk"), 16 * 1024) else {
+        eprintln!("skipped: no right to mount a small file system");
+        return;
+    };
+    for option in ["--csv", "--frames", "--netcdf", "--mcap", "--svg"] {
+        let run = bench.run(&format!("ride --speed 4 -q {option} disk/ride"));
+        run.rejected_naming(&["can't write disk/ride", "No space left"]);
+        assert_eq!(std::fs::read_dir(bench.path("disk")).unwrap().count(), 0, "{option}");
+    }
 }
 
 /// Situation: a ride with its frames and its table requested.

@@ -85,7 +85,8 @@ fn no_text_makes_the_fault_parser_panic() {
 #[test]
 fn an_invalid_fault_names_the_allowed_ones() {
     for (text, says) in [
-        ("gyro", "expected CHANNEL"),
+        ("gyro", "gyro needs a kind of fault; there are stuck, missing, late=TIME"),
+        ("x", "the channels are gyro, accel, steer, steer-rate"),
         ("gyros:stuck", "gyro, accel, steer"),
         ("gyro.w:stuck", "x, y, z"),
         ("steer.x:stuck", "one axis only"),
