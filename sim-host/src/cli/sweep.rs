@@ -5,7 +5,7 @@ use super::outputs::{complain, complain_once, print, write_json};
 use super::progress::{progress, tell_wait};
 use super::scenario_error::failure;
 use super::threads::ThreadArgs;
-use super::{Ended, Failure, interrupt, sweep_status};
+use super::{Ended, Failure, UsageError, interrupt, sweep_status};
 use crate::basin::{Bound, border};
 use crate::commands::sweep::{SweepTask, sweep as resolve};
 use crate::report::output::Output;
@@ -47,7 +47,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "I/N", value_parser = Shard::parse)]
     shard: Option<Shard>,
     /// Show which cells of the sweep in DIR are done, by which processes the others are computed, and the time left
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["over", "out", "shard", "dry_run", "quiet"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["over", "out", "shard", "dry_run", "quiet", "scenario", "threads"])]
     status: Option<PathBuf>,
     /// List the cells, estimate the computing time, and end
     #[arg(long, conflicts_with = "json")]
@@ -99,6 +99,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return merge(args);
     }
     if let Some(folder) = &args.status {
+        if let Some(given) = args.search.given.iter().chain(&args.conditions.given).next() {
+            let name = given.setting.name;
+            return Err(UsageError(format!(
+                "--{name} has no effect with --status, which reads the folder's plan"
+            ))
+            .into());
+        }
         return sweep_status::run(folder, args.output.json.as_deref());
     }
     let mut base = args.scenario.read()?;
