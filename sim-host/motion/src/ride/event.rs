@@ -53,6 +53,31 @@ pub(super) fn at_fall(before: &State<f64>, after: &State<f64>, tau: f64, h: f64)
     }
 }
 
+/// Largest magnitudes of roll and steer in the part `from` to 1 of a step of `h` seconds, on the cubic of [`time_of_fall`].
+pub(super) fn largest_angles((before, after): (&State<f64>, &State<f64>), h: f64, from: f64) -> [f64; 2] {
+    let of = |x0: f64, x1: f64, v0: f64, v1: f64| largest(&[x0, x1, v0 * h, v1 * h], from);
+    [
+        of(before.roll, after.roll, before.roll_rate, after.roll_rate),
+        of(before.steer, after.steer, before.steer_rate, after.steer_rate),
+    ]
+}
+
+/// Largest magnitude of the Hermite cubic between `from` and 1, where it has at most one extremum.
+fn largest(p: &[f64; 4], from: f64) -> f64 {
+    let begin = if from > 0.0 { hermite(p, from) } else { p[0] };
+    let ends = begin.abs().max(p[1].abs());
+    let (m0, m1) = (p[2], p[3]);
+    if m0 * m1 >= 0.0 {
+        return ends;
+    }
+    // The slope a s^2 + b s + m0 changes its sign once between 0 and 1: the root by the formula that does not cancel.
+    let rise = p[1] - p[0];
+    let (a, b) = (3.0 * (m0 + m1) - 6.0 * rise, 6.0 * rise - 4.0 * m0 - 2.0 * m1);
+    let q = -0.5 * (b + (b * b - 4.0 * a * m0).sqrt().copysign(b));
+    let inside = [q / a, m0 / q].into_iter().find(|s| (from..=1.0).contains(s));
+    inside.map_or(ends, |s| ends.max(hermite(p, s).abs()))
+}
+
 /// Hermite cubic with values `p[0]`, `p[1]` and slopes `p[2]`, `p[3]` at 0 and 1.
 fn hermite(p: &[f64; 4], s: f64) -> f64 {
     let (s2, s3) = (s * s, s * s * s);

@@ -32,6 +32,41 @@ struct Line<'a, L> {
     work: Work,
 }
 
+/// A narrowed edge and the exact rides of its ends.
+struct Ends {
+    edge: Edge,
+    safe: Ride,
+    fell: Ride,
+}
+
+impl Ends {
+    fn contain_border(&self) -> bool {
+        !self.safe.fell() && self.fell.fell()
+    }
+
+    /// The neighbouring end of the division of `outer` that came before, on the side on which the border must be; `None` if the
+    /// ends contain the border, or there is none.
+    fn neighbour(&self, outer: &Edge) -> Option<f64> {
+        let points = [outer.safe].into_iter().chain(outer.sections()).chain([outer.fell]);
+        let points: Vec<f64> = points.collect();
+        let at = points.iter().position(|point| *point == self.edge.safe)?;
+        match (self.safe.fell(), self.fell.fell()) {
+            (false, true) => None,
+            (true, _) => at.checked_sub(1).map(|at| points[at]),
+            (false, false) => points.get(at + 2).copied(),
+        }
+    }
+
+    /// The ends of the section beside these, of whose other end `neighbour` is the ride with the disturbance `rate` \[rad/s\].
+    fn shifted(&self, rate: f64, neighbour: Ride) -> Self {
+        if self.safe.fell() {
+            Self { edge: Edge { safe: rate, fell: self.edge.safe }, safe: neighbour, fell: self.safe }
+        } else {
+            Self { edge: Edge { safe: self.edge.fell, fell: rate }, safe: self.fell, fell: neighbour }
+        }
+    }
+}
+
 /// The basins along some lines of disturbances.
 pub(super) fn columns<L: Fn(f64) -> Start>(
     conditions: &Conditions,
@@ -213,42 +248,65 @@ fn confirmed<L: Fn(f64) -> Start>(
     let mut safe_rides = exact(conditions, &mut lines, &wanted);
     let fallen_rides = safe_rides.split_off(safe.len());
     let (mut safe_rides, mut fallen_rides) = (safe_rides.into_iter(), fallen_rides.into_iter());
-    let finished = |line: Line<L>| {
-        let edges = line.edges.len();
-        let safe: Vec<Ride> = safe_rides.by_ref().take(edges.max(1)).collect();
-        let fallen: Vec<Ride> = fallen_rides.by_ref().take(edges).collect();
-        finished(conditions, search, line, &safe, &fallen)
-    };
-    lines.into_iter().map(finished).collect()
+    // The ends of the edges of each line, and without edges the ride of the largest disturbance.
+    let mut ends: Vec<(Vec<Ends>, Option<Ride>)> = Vec::new();
+    for line in &lines {
+        let of_edge =
+            |edge: &Edge| Some(Ends { edge: *edge, safe: safe_rides.next()?, fell: fallen_rides.next()? });
+        let of_edges = line.edges.iter().filter_map(of_edge).collect();
+        ends.push((of_edges, if line.edges.is_empty() { safe_rides.next() } else { None }));
+    }
+    shift(conditions, &mut lines, &mut ends);
+    let finished =
+        |(line, (ends, last)): (Line<L>, (Vec<Ends>, _))| finished(conditions, search, line, &ends, last);
+    lines.into_iter().zip(ends).map(finished).collect()
 }
 
-/// The column of a line whose edges have these exact rides at their safe and falling ends. Without edges, `safe` has the
-/// ride of the largest disturbance.
+/// Moves the ends that do not contain their border by one section.
+fn shift<L: Fn(f64) -> Start>(
+    conditions: &Conditions,
+    lines: &mut [Line<L>],
+    ends: &mut [(Vec<Ends>, Option<Ride>)],
+) {
+    let (mut wanted, mut moved) = (Vec::new(), Vec::new());
+    for (i, ((ends, _), line)) in ends.iter_mut().zip(lines.iter()).enumerate() {
+        for (ends, outer) in ends.iter_mut().zip(&line.outer) {
+            if let Some(rate) = ends.neighbour(outer) {
+                wanted.push((i, rate));
+                moved.push(ends);
+            }
+        }
+    }
+    let done = exact(conditions, lines, &wanted);
+    for ((ends, (_, rate)), ride) in moved.into_iter().zip(wanted).zip(done) {
+        *ends = ends.shifted(rate, ride);
+    }
+}
+
+/// The column of a line whose edges have these ends. Without edges, `last` is the ride of the largest disturbance.
 fn finished<L: Fn(f64) -> Start>(
     conditions: &Conditions,
     search: &Search,
     mut line: Line<L>,
-    safe: &[Ride],
-    fell: &[Ride],
+    ends: &[Ends],
+    last: Option<Ride>,
 ) -> Column {
     let speed = (line.start)(0.0).speed_m_s;
     if line.contradicted {
         return plain(conditions, search, line.start);
     }
     if line.edges.is_empty() {
-        let last = safe.first().copied();
         return match last.is_some_and(|ride| ride.fell()) {
             true => plain(conditions, search, line.start),
             false => column(speed, search, line.scan, &[], last, line.work),
         };
     }
-    let mut borders = Vec::with_capacity(line.edges.len());
-    for i in 0..line.edges.len() {
-        let (edge, safe, beyond) = (line.edges[i], safe[i], fell[i]);
-        let quick = (!safe.fell() && beyond.fell()).then(|| Border {
-            safe: edge.safe,
-            ride: (edge.safe != 0.0).then_some(safe),
-            beyond: beyond.outcome.fall(),
+    let mut borders = Vec::with_capacity(ends.len());
+    for (i, ends) in ends.iter().enumerate() {
+        let quick = ends.contain_border().then(|| Border {
+            safe: ends.edge.safe,
+            ride: (ends.edge.safe != 0.0).then_some(ends.safe),
+            beyond: ends.fell.outcome.fall(),
         });
         let mut within = |bracket: Edge| {
             let (start, work) = (line.start, &mut line.work);

@@ -1,8 +1,9 @@
 //! The ride in a lane: its time, fall, amplitudes and outcome.
 
 use super::forecast::{Forecast, Now};
+use super::{CLEAR, CLEAR_RIDDEN};
 use crate::bicycle::{FullState, State};
-use crate::ride::event::{fallen, time_of_fall};
+use crate::ride::event::{fallen, largest_angles, time_of_fall};
 use crate::ride::{Conditions, FallCause, Outcome};
 
 /// One ride in its lane.
@@ -38,10 +39,10 @@ impl Lane {
     }
 
     /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided
-    /// by the factor `clear`.
+    /// by the factor [`CLEAR`], or [`CLEAR_RIDDEN`] with a rider.
     pub(super) fn book(
         &mut self,
-        (conditions, clear): (&Conditions, f64),
+        conditions: &Conditions,
         (before, after): (&State<f64>, &State<f64>),
         h: f64,
     ) -> Option<Option<Outcome>> {
@@ -53,12 +54,11 @@ impl Lane {
         let angles = [after.roll.abs(), after.steer.abs()];
         // The exact ride's last second begins with the end of its first control period.
         let since_s = self.t - (conditions.time_limit_s - 1.0 + conditions.step_s);
-        for (i, (angle, before)) in angles.into_iter().zip([before.roll, before.steer]).enumerate() {
-            self.peak[i] = self.peak[i].max(angle);
-            if since_s >= 0.0 {
-                let at_begin = angle + (before.abs() - angle) * (since_s / h).min(1.0);
-                self.late[i] = self.late[i].max(angle).max(at_begin);
-            }
+        let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
+        self.peak = larger(self.peak, largest_angles((before, after), h, 0.0));
+        if since_s >= 0.0 {
+            let from = (1.0 - since_s / h).max(0.0);
+            self.late = larger(self.late, largest_angles((before, after), h, from));
         }
         let over = self.t >= conditions.time_limit_s - 1e-9;
         if let Some(flat) = conditions.fall.flat {
@@ -79,6 +79,7 @@ impl Lane {
                 }
             }
         }
+        let clear = if conditions.rider.is_some() { CLEAR_RIDDEN } else { CLEAR };
         over.then(|| Outcome::of_amplitudes(conditions.recovered_below, self.late, self.peak, clear))
     }
 
