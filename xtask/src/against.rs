@@ -14,7 +14,7 @@ const BUILD: Duration = Duration::from_secs(3600);
 const RUN: Duration = Duration::from_secs(3600);
 
 /// What is timed: a name, and the arguments of `sim-host` that every commit knows.
-const WORK: [(&str, &[&str]); 9] = [
+const WORK: [(&str, &[&str]); 11] = [
     ("h basin, control crate at 1 kHz", &["basin"]),
     ("h basin, ideal law", &["basin", "--assist", "ideal"]),
     ("basin without assist", &["basin", "--law", "none"]),
@@ -42,6 +42,8 @@ const WORK: [(&str, &[&str]); 9] = [
         ],
     ),
     ("eigenvalues of the young rider", &["eigen", "--rider", "young"]),
+    ("study limits", &["study", "limits"]),
+    ("thesis --quick", &["thesis", "--quick"]),
 ];
 
 /// Builds `commit` beside the work tree, runs each command `runs` times with either program, and prints a table.
