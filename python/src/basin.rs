@@ -1,7 +1,7 @@
 //! `basin`.
 
 use crate::error::{of_command, of_scenario};
-use crate::law::OwnFunction;
+use crate::law::{Given, OwnFunction};
 use crate::scenario::{json, setup};
 use crate::work::{Options, run};
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use sim_host::commands::basin::BasinTask;
 pub(crate) fn basin<'py>(
     py: Python<'py>,
     scenario: &str,
-    law: Option<&Bound<'py, PyAny>>,
+    law: Option<Given<'py>>,
     threads: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, bool)> {

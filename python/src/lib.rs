@@ -4,6 +4,7 @@
 
 mod basin;
 mod catalogue;
+mod compiled;
 mod eigen;
 mod error;
 mod flags;

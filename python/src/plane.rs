@@ -1,7 +1,7 @@
 //! `plane`.
 
 use crate::error::of_command;
-use crate::law::OwnFunction;
+use crate::law::{Given, OwnFunction};
 use crate::scenario::{json, setup};
 use crate::work::{Options, run};
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use sim_host::commands::plane::plane as search_plane;
 pub(crate) fn plane<'py>(
     py: Python<'py>,
     scenario: &str,
-    law: Option<&Bound<'py, PyAny>>,
+    law: Option<Given<'py>>,
     threads: Option<usize>,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<(String, bool)> {

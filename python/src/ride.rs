@@ -2,7 +2,7 @@
 
 use crate::error::of_command;
 use crate::flags;
-use crate::law::OwnFunction;
+use crate::law::{Given, OwnFunction};
 use crate::scenario::{json, setup};
 use crate::work::{Options, run};
 use pyo3::prelude::*;
@@ -44,7 +44,7 @@ pub(crate) fn bytes<'py>(py: Python<'py>, values: impl Iterator<Item = f64>) -> 
 pub(crate) fn ride<'py>(
     py: Python<'py>,
     scenario: &str,
-    law: Option<&Bound<'py, PyAny>>,
+    law: Option<Given<'py>>,
 ) -> PyResult<Option<(String, Bound<'py, PyDict>)>> {
     let law = law.map(OwnFunction::new);
     let setup = setup(py, scenario, law.as_ref())?;

@@ -16,11 +16,11 @@ const EVERY: Duration = Duration::from_millis(50);
 pub(crate) struct Options<'a, 'py> {
     /// Number of parts that are known at the start.
     pub(crate) parts: usize,
-    /// Threads; `None` for one per core. A law that is a Python function has one.
+    /// Threads; `None` for one per core. A law that is a Python function and not compiled has one.
     pub(crate) threads: Option<usize>,
     /// Called with the numbers of finished and of all parts.
     pub(crate) progress: Option<&'a Bound<'py, PyAny>>,
-    /// The law that is a Python function.
+    /// The law that is a function.
     pub(crate) law: Option<&'a OwnFunction>,
 }
 
@@ -28,7 +28,7 @@ pub(crate) struct Options<'a, 'py> {
 /// exception of a handler, such as Ctrl-C's, or of `progress` stops the computation, which then returns what is finished.
 ///
 /// # Errors
-/// The exception of the law that is a Python function, or an exception other than that of Ctrl-C.
+/// The exception of the law that is a function, or an exception other than that of Ctrl-C.
 pub(crate) fn run<T: Send>(
     py: Python<'_>,
     options: &Options<'_, '_>,
@@ -38,7 +38,8 @@ pub(crate) fn run<T: Send>(
     let stop = AtomicBool::new(false);
     let law = options.law;
     let stopped = || stop.load(Ordering::Relaxed) || law.is_some_and(OwnFunction::failed);
-    let pool = pool(if law.is_some() { Some(1) } else { options.threads })?;
+    let interpreted = law.is_some_and(OwnFunction::interpreted);
+    let pool = pool(if interpreted { Some(1) } else { options.threads })?;
     let (finished, ended) = channel();
     // Shared with the threads that wait for it, of which there is one at a time.
     let ended = Mutex::new(ended);
@@ -58,10 +59,9 @@ pub(crate) fn run<T: Send>(
                 },
                 stop: stopped,
             };
-            let computed = pool.install(|| match law {
+            let computed = pool.install(|| {
                 // Attached throughout: the calls of the law then cost no more than the calls.
-                Some(_) => Python::attach(|_| compute(hooks)),
-                None => compute(hooks),
+                if interpreted { Python::attach(|_| compute(hooks)) } else { compute(hooks) }
             });
             // The receiver waits until the end.
             let _ = finished.send(computed);

@@ -2,8 +2,10 @@
 
 from collections.abc import Callable
 from os import PathLike
+from typing import Any
 
-_Law = Callable[[float, float], float]
+# A function, or the owner of its name and code with the code's address.
+_Law = tuple[Any, int | None]
 _Report = Callable[[int, int], object]
 
 def axis_coordinate(axis: str) -> tuple[str, str, list[float] | None]: ...

@@ -1,20 +1,19 @@
-"""Laws: data for the simulator, or a Python function."""
+"""Laws: data for the simulator, or a function."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from ._function import Law, function
 from ._scenario import doubt, read, short
 from ._scenario import scenario as as_scenario
 from .errors import ScenarioError
 
-#: ``f(roll_rate_rad_s, speed_m_s) -> torque_nm``
-Law = Callable[[float, float], float]
-
+#: A function as the simulator takes it: its owner, and the address of its code if it is compiled.
+Given = tuple[Any, int | None]
 
 #: Roll rates [rad/s] and speeds [m/s] at which a function is tried.
 ROLL_RATES = (0.003, 0.03, 0.1, 0.3, 0.5, 1.0, 3.0)
@@ -23,7 +22,7 @@ SPEEDS = (2.0, 4.0, 6.0)
 
 def steered(
     scenario: Any, law: Any, changes: dict[str, Any], table: str, mirrored: bool
-) -> tuple[dict[str, Any], Law | None]:
+) -> tuple[dict[str, Any], Given | None]:
     """A scenario with its changes and its law, which is returned apart if it is a function; warns of what is doubtful.
 
     Raises
@@ -33,14 +32,14 @@ def steered(
     """
     base = read(scenario)
     law = base.get("law") if law is None else law
-    function: Law | None = law if callable(law) else None
+    own = function(law) if callable(law) else None
     base.pop("law", None)
-    given = {} if law is None or function is not None else {"law": law}
+    given = {} if law is None or own is not None else {"law": law}
     data = as_scenario({**base, **given}, **short(changes, table))
-    if function is not None:
-        check(function, mirrored)
+    if own is not None:
+        check(own.call, mirrored)
     doubt(data)
-    return data, function
+    return data, None if own is None else (own.owner, own.address)
 
 
 def check(law: Law, mirrored: bool) -> None:

@@ -19,7 +19,7 @@ from .errors import ScenarioError, ScenarioWarning
 START = {"speed_m_s", "steer_rate_rad_s", "roll_rate_rad_s"}
 SEARCH = {"speeds", "axis", "max_rate", "scan_step", "tolerance", "method", "adaptive_speeds"}
 PLANE = {"speed", "rays", "max_steer_rate", "max_roll_rate", "points", "tolerance", "method"}
-#: What the name of a law that was a Python function begins with.
+#: What the name of a law that was a function begins with.
 FUNCTION = "python:"
 #: Keys that can be given as keyword arguments, without their table.
 SHORT = {"start": START, "search": SEARCH, "plane": PLANE}
@@ -57,13 +57,13 @@ def as_law(law: Any) -> Any:
     Raises
     ------
     ScenarioError
-        It is a Python function, or the name of one.
+        It is a function, or the name of one.
     """
     if callable(law):
-        raise ScenarioError("law: a Python function is no data; it goes with ride, basin and plane, as law=", "law")
+        raise ScenarioError("law: a function is no data; it goes with ride, basin and plane, as law=", "law")
     if isinstance(law, str) and law.startswith(FUNCTION):
         name = law.removeprefix(FUNCTION)
-        raise ScenarioError(f"law: it was the Python function `{name}`, which a result does not contain; pass it again as law=", "law")
+        raise ScenarioError(f"law: it was the function `{name}`, which a result does not contain; pass it again as law=", "law")
     if isinstance(law, pd.DataFrame):
         return {"name": "table", **{str(name): law[name].to_numpy() for name in law.columns}}
     return {"name": "table", **law} if isinstance(law, Mapping) else law
