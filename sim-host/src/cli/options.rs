@@ -188,6 +188,7 @@ impl<S> Options<S> {
     }
 
     /// The options without those of a name.
+    #[cfg(feature = "fmu")]
     fn without(&self, name: &str) -> Self {
         let given = self.given.iter().filter(|given| given.setting.name != name).cloned().collect();
         Self { given, of: PhantomData }
