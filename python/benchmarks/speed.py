@@ -1,4 +1,4 @@
-"""The package's time beside the command line's, and a law that is a Python function beside numba and scipy.
+"""The package's time beside the command line's, and a law that is a function, Python's or compiled, beside numba and scipy.
 
 python python/benchmarks/speed.py target/release/sim-host
 
@@ -9,6 +9,7 @@ parameters; law h acts on the roll rate, scheduled by the rear wheel's speed. Ne
 import importlib.util
 import json
 import math
+import os
 import statistics
 import subprocess
 import sys
@@ -32,22 +33,16 @@ def reference():
     return module
 
 
-def timed(run, times):
-    """Median seconds of some runs after a first one, and the last result."""
-    result, seconds = run(), []
+def in_turn(runs, times):
+    """Median seconds of each, measured in turn after a first run, and the last results."""
+    results = [run() for run in runs]
+    seconds = [[] for _ in runs]
     for _ in range(times):
-        begin = time.perf_counter()
-        result = run()
-        seconds.append(time.perf_counter() - begin)
-    return statistics.median(seconds), result
-
-
-def in_turn(one, other, times):
-    """Median seconds of two, measured in turn."""
-    pairs = []
-    for _ in range(times):
-        pairs.append((timed(one, 1)[0], timed(other, 1)[0]))
-    return [statistics.median(seconds) for seconds in zip(*pairs)]
+        for i, run in enumerate(runs):
+            begin = time.perf_counter()
+            results[i] = run()
+            seconds[i].append(time.perf_counter() - begin)
+    return [statistics.median(some) for some in seconds], results
 
 
 def h(roll_rate_rad_s, speed_m_s):
@@ -65,7 +60,7 @@ def beside_the_command_line(program):
         ("ride", lambda: run("ride", *words), lambda: sa.ride(**START), 30),
     ]
     for name, there, here, times in pairs:
-        a, b = in_turn(there, here, times)
+        (a, b), _ = in_turn([there, here], times)
         print(f"| {name} | {1e3 * a:.1f} ms | {1e3 * b:.1f} ms | {b / a:.2f} |")
     there = statistics.median(json.loads(run("basin"))["seconds"] for _ in range(5))
     here = statistics.median(sa.document(sa.basin(progress=False))["seconds"] for _ in range(5))
@@ -73,7 +68,7 @@ def beside_the_command_line(program):
 
 
 def peers():
-    """The ride with the law by numba alone, and by scipy with numba's right-hand side."""
+    """The ride with the law by scipy with numba's right-hand side, and by numba alone."""
     module = reference()
     p, rhs = module.bicycle("rigid_jason"), module.rhs
     rear, gains = p[0], np.zeros((2, 5))
@@ -111,28 +106,40 @@ def peers():
     def by_scipy():
         return solve_ivp(slope, (0.0, 6.0), y, method="DOP853", rtol=1e-9, atol=1e-11).y[:, -1]
 
-    numba_s, end = timed(lambda: runge_kutta(y, 6000, 1e-3), 15)
-    scipy_s, other = timed(by_scipy, 9)
-    return numba_s, end[columns], scipy_s, other[columns]
+    return lambda: by_scipy()[columns], lambda: runge_kutta(y, 6000, 1e-3)[columns]
 
 
 def beside_numba():
-    numba_s, end, scipy_s, other = peers()
-    own_s, ride = timed(lambda: sa.ride(law=h, schedule_speed="rear", **START), 15)
-    final = sa.document(ride)["final"]
-    state = [final[key] for key in ("roll", "steer", "roll_rate", "steer_rate", "rear_wheel_rate")]
-    apart = max(np.abs(state - end).max(), np.abs(state - other).max())
-    basin_s, basin = timed(lambda: sa.basin(law=h, schedule_speed="rear", speeds="2:6:0.5", progress=False), 3)
-    rides = sa.document(basin)["work"]["rides"]
-    rows = [
-        ("scipy, DOP853 to 1e-9, right-hand side by numba", scipy_s),
-        ("numba alone, Runge-Kutta at 1 ms, law compiled", numba_s),
-        ("`ride` with the law as a Python function", own_s),
-        ("`basin` with it, per ride", basin_s / rides),
-    ]
+    compiled, threads = numba.njit(h), os.cpu_count()
+    by_scipy, by_numba = peers()
+
+    def ride(law):
+        return lambda: sa.ride(law=law, schedule_speed="rear", **START)
+
+    def basin(law, threads):
+        search = {"speeds": "2:6:0.5", "threads": threads, "progress": False}
+        return lambda: sa.basin(law=law, schedule_speed="rear", **search)
+
+    rows = {
+        "scipy, DOP853 to 1e-9, right-hand side by numba": by_scipy,
+        "numba alone, Runge-Kutta at 1 ms, law compiled": by_numba,
+        "`ride` with a Python function": ride(h),
+        "`ride` with a function of numba": ride(compiled),
+        "`basin` with a Python function, one thread, per ride": basin(h, 1),
+        "`basin` with a function of numba, one thread, per ride": basin(compiled, 1),
+        f"`basin` with a function of numba, {threads} threads, per ride": basin(compiled, threads),
+    }
+    names = list(rows)
+    seconds, results = in_turn([rows[name] for name in names[:4]], 15)
+    of_basins, basins = in_turn([rows[name] for name in names[4:]], 5)
+    seconds += [time_s / sa.document(found)["work"]["rides"] for time_s, found in zip(of_basins, basins)]
+    finals = [sa.document(result)["final"] for result in results[2:]]
+    keys = ("roll", "steer", "roll_rate", "steer_rate", "rear_wheel_rate")
+    states = results[:2] + [np.array([final[key] for key in keys]) for final in finals]
+    apart = max(np.abs(one - other).max() for one in states for other in states)
     print("\n| | a ride | rides per second | beside scipy and numba |\n| --- | ---: | ---: | ---: |")
-    for name, seconds in rows:
-        print(f"| {name} | {1e3 * seconds:.2f} ms | {1 / seconds:.0f} | {scipy_s / seconds:.1f} |")
+    for name, ride_s in zip(names, seconds):
+        print(f"| {name} | {1e3 * ride_s:.2f} ms | {1 / ride_s:.0f} | {seconds[0] / ride_s:.1f} |")
     print(f"\nThe final states differ by at most {apart:.1e} (rad, rad/s).")
     if not apart < AGREED:
         raise SystemExit(f"the rides differ by more than {AGREED}")

@@ -24,7 +24,8 @@ def basin(
     Parameters
     ----------
     scenario, law
-        As of :func:`steer_assist.ride`; a function must be odd in the roll rate and computes on one thread.
+        As of :func:`steer_assist.ride`; a function must be odd in the roll rate; one of Python computes on one
+        thread, a compiled one on all.
     threads : int, optional
         Number of threads; by default one per core. The result does not depend on it.
     progress : bool or callable, optional
