@@ -143,9 +143,11 @@ fn caused(trace: &[TracePoint]) -> String {
     let mut known = Causes::NONE;
     let mut first = Vec::new();
     for point in trace {
-        let present = Causes(point.causes);
-        first.extend(present.iter().filter(|cause| !known.has(*cause)).map(|cause| (cause, point.t)));
-        known = Causes(known.0 | present.0);
+        let added = Causes(point.causes & !known.0);
+        if !added.is_empty() {
+            first.extend(added.iter().map(|cause| (cause, point.t)));
+            known = known.with(added);
+        }
     }
     let each = first.iter().map(|(cause, t)| format!("{} {} from {t:.3} s", cause.code(), cause.name()));
     let each: Vec<String> = each.collect();

@@ -29,6 +29,7 @@ mod record;
 mod riders;
 mod same_bytes;
 mod scenario;
+mod smoothing;
 
 mod study;
 mod sweep;

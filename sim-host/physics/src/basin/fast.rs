@@ -47,6 +47,9 @@ impl Ends {
     /// The neighbouring end of the division of `outer` that came before, on the side on which the border must be; `None` if the
     /// ends contain the border, or there is none.
     fn neighbour(&self, outer: &Edge) -> Option<f64> {
+        if self.edge == *outer {
+            return None;
+        }
         let points = [outer.safe].into_iter().chain(outer.sections()).chain([outer.fell]);
         let points: Vec<f64> = points.collect();
         let at = points.iter().position(|point| *point == self.edge.safe)?;

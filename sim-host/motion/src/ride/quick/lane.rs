@@ -8,15 +8,17 @@ use crate::ride::{Conditions, FallCause, Outcome};
 
 /// One ride in its lane.
 pub(super) struct Lane {
+    /// Index of the ride's start.
     pub(super) index: usize,
     /// Time since the disturbance \[s\].
     pub(super) t: f64,
+    /// Steps taken.
     pub(super) steps: u32,
     /// Largest roll and steer \[rad\].
     peak: [f64; 2],
     /// Largest roll and steer in the last second \[rad\].
     late: [f64; 2],
-    /// Time at which the roll first passed [`crate::ride::LaidFlat::roll_rad`].
+    /// Time at which the roll first passed [`crate::ride::LaidFlat::roll_rad`] \[s\].
     flat_s: Option<f64>,
     /// Six-speed state near singular configurations.
     pub(super) full: Option<FullState>,
@@ -54,7 +56,6 @@ impl Lane {
         let angles = [after.roll.abs(), after.steer.abs()];
         // The exact ride's last second begins with the end of its first control period.
         let since_s = self.t - (conditions.time_limit_s - 1.0 + conditions.step_s);
-        let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
         self.peak = larger(self.peak, largest_angles((before, after), h, 0.0));
         if since_s >= 0.0 {
             let from = (1.0 - since_s / h).max(0.0);
@@ -96,8 +97,12 @@ impl Lane {
         }
         self.forecast_s = self.t + Forecast::INTERVAL_S;
         let (late, peak) = forecast.amplitudes(now, conditions.time_limit_s - now.t_s)?;
-        let larger = |a: [f64; 2], b: [f64; 2]| [a[0].max(b[0]), a[1].max(b[1])];
         let (late, peak) = (larger(self.late, late), larger(self.peak, peak));
         forecast.outcome(conditions.recovered_below, late, peak)
     }
+}
+
+/// The larger of each.
+fn larger(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].max(b[0]), a[1].max(b[1])]
 }
