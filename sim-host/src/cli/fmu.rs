@@ -5,7 +5,7 @@ use super::options::{Chosen, Fmu};
 use super::outputs::{complain, print};
 use super::{Ended, Failure};
 use crate::commands::Setup;
-use crate::fmu::{Part, Version, archive, library, model};
+use crate::fmu::{Part, Version, archive, library, model, with_speed};
 use crate::report::output::Output;
 use crate::scenario::Scenario;
 use serde_json::Value;
@@ -47,13 +47,13 @@ pub(super) struct Args {
 
 /// The model of a part, as in its FMU; `None` if the scenario has none.
 fn model_of(part: Part, scenario: &Scenario) -> Option<Value> {
-    let setup = Setup::new(scenario).ok()?;
+    let setup = Setup::new(&with_speed(scenario.clone())).ok()?;
     serde_json::to_value(model(part, &setup).ok()?).ok()
 }
 
 pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     let Command::Export(args) = command;
-    let scenario = args.scenario.scenario()?;
+    let scenario = with_speed(args.scenario.scenario()?);
     if let Some(ended) = printed(&args.scenario, &scenario)? {
         return Ok(ended);
     }

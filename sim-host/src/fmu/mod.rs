@@ -10,7 +10,7 @@ mod unit;
 pub use archive::archive;
 pub use description::Version;
 pub use library::{LibraryError, library};
-pub use part::{Part, PartError, model};
+pub use part::{Part, PartError, model, with_speed};
 
 use crate::report::tool::Tool;
 use crate::scenario::Scenario;

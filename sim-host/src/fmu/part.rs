@@ -3,6 +3,7 @@
 use crate::bicycle::ForcePoint;
 use crate::commands::Setup;
 use crate::ride::{Assist, Conditions, ScheduleSpeed, Start};
+use crate::scenario::Scenario;
 use control::wire::encode_config;
 use fmi::Setup as Model;
 use std::fmt::Write;
@@ -85,6 +86,17 @@ pub enum PartError {
     InitialSpeed,
 }
 
+/// Forward speed at the start of an FMU whose scenario has none \[m/s\].
+const SPEED_M_S: f64 = 4.0;
+
+/// The scenario, with a speed where its start has none.
+pub fn with_speed(mut scenario: Scenario) -> Scenario {
+    if let Some(start) = scenario.start.as_mut().filter(|start| start.speed_m_s.is_nan()) {
+        start.speed_m_s = SPEED_M_S;
+    }
+    scenario
+}
+
 /// The model of `part`, at the start of the scenario or at 4 m/s.
 ///
 /// # Errors
@@ -98,7 +110,7 @@ pub fn model(part: Part, setup: &Setup) -> Result<Model, PartError> {
     if *schedule_speed == ScheduleSpeed::Initial {
         return Err(PartError::InitialSpeed);
     }
-    let start = scenario.start.unwrap_or(Start { speed_m_s: 4.0, ..Start::default() });
+    let start = scenario.start.unwrap_or(Start { speed_m_s: SPEED_M_S, ..Start::default() });
     Ok(match part {
         Part::Controller => {
             let Assist::Firmware(plan) = assist else { return Err(PartError::NoController) };

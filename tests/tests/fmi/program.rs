@@ -18,7 +18,7 @@ fn refused_exports() {
         ("bicycle --sensor-delay 1ms", &["exact sensors", "delays"]),
         ("controller --preset product --fault gyro:stuck@1s", &["exact sensors", "faults"]),
         ("controller --schedule-speed initial", &["--schedule-speed front or rear"]),
-        ("bicycle --steer-rate 3", &["--speed", "must be given"]),
+        ("bicycle --speed nan", &["--speed", "`nan` is not a number"]),
         ("controller --torque-limit 500", &["torque", "500"]),
         ("bicycle --library nothing.so", &["nothing.so"]),
         ("bicycle --library /dev/null", &["/dev/null", "not the dynamic library"]),
@@ -48,6 +48,9 @@ fn options_without_effect_are_told() {
             &["law", "torque-limit", "recovered-below"],
         ),
         ("bicycle --set rate_hz=500", &[]),
+        ("bicycle --steer-rate 5", &[]),
+        ("bicycle --roll-rate 0", &["roll-rate"]),
+        ("controller --roll-rate 1", &["roll-rate"]),
         ("rider --rider smart --delay 30ms", &[]),
         ("rider --rider smart --speed 4 --preset product --taper 1:2", &["preset", "taper", "speed"]),
     ] {
