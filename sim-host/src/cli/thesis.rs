@@ -107,7 +107,7 @@ fn summary(document: &ThesisDocument) -> String {
     let starts = |word: &str| printed().filter(|v| v.explanation.starts_with(word)).count();
     let close = printed().filter(|v| v.difference_percent.is_some() && v.explanation.is_empty()).count();
     format!(
-        "{} items in {:.1} s, {} not computable; {} printed numbers: {close} within 2 %, {} explained, {} unexplained\n",
+        "{} items in {:.1} s, {} not computable; {} printed numbers: {close} within 2 %, the rounding or the bound of the print, {} explained, {} unexplained\n",
         items("computed"),
         document.seconds,
         items("unavailable"),

@@ -42,7 +42,7 @@ fn summary(document: &ThesisDocument) -> String {
     format!(
         "<p>Every table and computed figure of Kuipers, <cite>The Stability of a Bicycle-Rider System</cite>, Delft \
          2020, by {} {} (commit {}), in {:.0} s.</p>\n{cut}\
-         <p>Of {} printed numbers <b>{close}</b> are met within {ACCEPTED_PERCENT} %, <b>{explained}</b> differ and are \
+         <p>Of {} printed numbers <b>{close}</b> are met within {ACCEPTED_PERCENT} %, the rounding of the print or the printed bound, <b>{explained}</b> differ and are \
          explained by another reading of the text that was computed too, <b>{unexplained}</b> differ unexplained, \
          {missing} have no computed counterpart.</p>\n\
          <p>“Exact” is the value of the model: rides of 6 s, a fall at 90 degrees of roll or steer, gains set by the \
