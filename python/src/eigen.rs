@@ -7,7 +7,7 @@ use control::Capsize;
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use serde::Deserialize;
-use sim_host::commands::eigen::{EigenTask, eigen as analyse};
+use sim_host::commands::eigen::{EigenTask, eigen_until};
 use sim_host::eigen::LinearActuator;
 use sim_host::scenario::{Scenario, law};
 
@@ -24,7 +24,7 @@ const NAMES: [(&str, &str); 4] = [
 #[serde(default, deny_unknown_fields)]
 struct Choice {
     speeds: Vec<f64>,
-    roots: usize,
+    roots: Option<usize>,
     capsize: Option<(f32, f32)>,
     actuator_delay_s: f64,
     actuator_lag_s: f64,
@@ -36,7 +36,7 @@ impl Default for Choice {
     fn default() -> Self {
         Self {
             speeds: (0..=100).map(|i| f64::from(i) / 10.0).collect(),
-            roots: 12,
+            roots: None,
             capsize: None,
             actuator_delay_s: 0.0,
             actuator_lag_s: 0.0,
@@ -53,11 +53,11 @@ pub(crate) fn eigen(py: Python<'_>, scenario: &str, choice: &str) -> PyResult<St
     let choice: Choice = chosen(py, choice)?;
     let task = task(py, &scenario, choice)?;
     let options = Options { parts: 1, threads: None, progress: None, law: None };
-    let (found, interrupted) = run(py, &options, |_| analyse(&task))?;
-    if interrupted {
-        return Err(PyKeyboardInterrupt::new_err("the analysis was interrupted"));
+    let (found, interrupted) = run(py, &options, |hooks| eigen_until(&task, hooks.stop))?;
+    match found.map_err(|error| of_renamed(py, &error, &NAMES))? {
+        Some(found) if !interrupted => Ok(json(&found.document)),
+        _ => Err(PyKeyboardInterrupt::new_err("the analysis was interrupted")),
     }
-    found.map(|found| json(&found.document)).map_err(|error| of_renamed(py, &error, &NAMES))
 }
 
 fn task(py: Python<'_>, scenario: &Scenario, choice: Choice) -> PyResult<EigenTask> {

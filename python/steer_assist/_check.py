@@ -49,7 +49,13 @@ def plain(value: Any, key: str = "") -> Any:
         return str(value)
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
-    raise ScenarioError(f"{key}: a {type(value).__name__} is no value of a scenario", key)
+    raise ScenarioError(f"{key}: {kind(value)} is no value of a scenario", key)
+
+
+def kind(value: Any) -> str:
+    """The kind of a value, with its article: "an int"."""
+    name = type(value).__name__
+    return f"{'an' if name[0] in 'aeiouAEIOU' else 'a'} {name}"
 
 
 def path(file: Any, key: str) -> str:
@@ -61,7 +67,7 @@ def path(file: Any, key: str) -> str:
         It is something else, such as a table that was already read.
     """
     if not isinstance(file, (str, os.PathLike)):
-        raise ScenarioError(f"{key}: a {type(file).__name__} is no file; expected its name", key)
+        raise ScenarioError(f"{key}: {kind(file)} is no file; expected its name", key)
     return os.fsdecode(file)
 
 
@@ -90,7 +96,7 @@ def threads(number: int | None) -> int | None:
 def listed(array: np.ndarray, key: str) -> Any:
     """An array as a number or a list."""
     if array.ndim == 0 and array.dtype == object:
-        raise ScenarioError(f"{key}: a {type(array.item()).__name__} is no value of a scenario", key)
+        raise ScenarioError(f"{key}: {kind(array.item())} is no value of a scenario", key)
     if array.ndim > 1:
         raise ScenarioError(f"{key}: an array of shape {array.shape}; expected one dimension", key)
     return plain(array.tolist(), key)

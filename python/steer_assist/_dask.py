@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from . import _core
+from ._check import kind
 from .errors import ClientError
 
 
@@ -18,7 +19,7 @@ def check(client: Any) -> None:
         It is no client, it is closed, or its scheduler does not answer.
     """
     if not hasattr(client, "submit") or not hasattr(client, "status"):
-        raise ClientError(f"client: a {type(client).__name__} is no dask.distributed.Client")
+        raise ClientError(f"client: {kind(client)} is no dask.distributed.Client")
     if client.status != "running":
         raise ClientError(f"client: the Dask client is {client.status}; nothing was computed")
 

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from . import _core
+from ._check import kind
 from .errors import ScenarioError
 
 #: Variable of a dataset: dimensions, values, attributes.
@@ -85,7 +86,7 @@ def document(result: xr.Dataset) -> dict[str, Any]:
         It is no result of this package, which has the attribute ``document``.
     """
     if not isinstance(result, xr.Dataset) or "document" not in result.attrs:
-        what = "a Dataset without it" if isinstance(result, xr.Dataset) else f"a {type(result).__name__}"
+        what = "a Dataset without it" if isinstance(result, xr.Dataset) else kind(result)
         raise ScenarioError(f"result: a result of this package has the attribute `document`; {what} is none", "result")
     try:
         content: dict[str, Any] = json.loads(result.attrs["document"])
@@ -117,7 +118,7 @@ def require(result: Any, names: Iterable[str], of: str) -> None:
         With the missing variables.
     """
     if not isinstance(result, xr.Dataset):
-        raise ScenarioError(f"result: a {type(result).__name__}; expected a Dataset of {of}", "result")
+        raise ScenarioError(f"result: {kind(result)}; expected a Dataset of {of}", "result")
     missing = [f"`{name}`" for name in names if name not in result.variables]
     if missing:
         raise ScenarioError(f"result: no Dataset of {of}: it has no {' and no '.join(missing)}", "result")

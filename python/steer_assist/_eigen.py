@@ -22,7 +22,7 @@ def eigen(
     /,
     *,
     speeds: Sequence[float] | np.ndarray | None = None,
-    roots: int = 12,
+    roots: int | None = None,
     capsize: tuple[float, float] | None = None,
     actuator_delay_s: float = 0.0,
     actuator_lag_s: float = 0.0,
@@ -38,8 +38,9 @@ def eigen(
         Its bicycle, rider and law are used; without a law there is none.
     speeds : sequence of float, optional
         Forward speeds [m/s], 0 to 10 by 0.1; negative ones without law and rider.
-    roots : int
-        Number of rightmost eigenvalues where a delay makes infinitely many, 4 to 40.
+    roots : int, optional
+        Number of rightmost eigenvalues where a rider or a delay makes infinitely many, 4 to 40, by default 12; without these it can't be
+        given.
     capsize : (float, float), optional
         Added capsize term: gain [N s/rad] per speed above the second number [m/s].
     actuator_delay_s, actuator_lag_s, steer_friction_nm_s_rad, steer_inertia_kg_m2 : float
@@ -68,7 +69,7 @@ def eigen(
         "steer_friction_nm_s_rad": steer_friction_nm_s_rad,
         "steer_inertia_kg_m2": steer_inertia_kg_m2,
     }
-    if not isinstance(roots, (int, np.integer)) or not 4 <= roots <= 40:
+    if roots is not None and (not isinstance(roots, (int, np.integer)) or not 4 <= roots <= 40):
         raise ScenarioError(f"roots = {roots!r} is no whole number from 4 to 40", "roots", (4.0, 40.0))
     data = as_scenario(scenario, **changes)
     doubt(data)

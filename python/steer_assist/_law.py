@@ -15,7 +15,7 @@ from .errors import ScenarioError
 #: A function as the simulator takes it: its owner, and the address of its code if it is compiled.
 Given = tuple[Any, int | None]
 
-#: Roll rates [rad/s] and speeds [m/s] at which a function is tried.
+#: Roll rates [rad/s], and speeds of basins [m/s], at which a function is tried.
 ROLL_RATES = (0.003, 0.03, 0.1, 0.3, 0.5, 1.0, 3.0)
 SPEEDS = (2.0, 4.0, 6.0)
 
@@ -36,21 +36,28 @@ def steered(
     base.pop("law", None)
     given = {} if law is None or own is not None else {"law": law}
     data = as_scenario({**base, **given}, **short(changes, table))
-    if own is not None:
-        check(own.call, mirrored)
     doubt(data)
+    if own is not None:
+        check(own.call, mirrored, speeds(data, table))
     return data, None if own is None else (own.owner, own.address)
 
 
-def check(law: Law, mirrored: bool) -> None:
-    """Calls a function at some roll rates to both sides.
+def speeds(data: dict[str, Any], table: str) -> tuple[float, ...]:
+    """The speeds at which a function is tried: that of the ride or plane, if there is one."""
+    inner = data.get(table) or {}
+    one = inner.get("speed_m_s", inner.get("speed"))
+    return SPEEDS if one is None else (float(one),)
+
+
+def check(law: Law, mirrored: bool, speeds: tuple[float, ...]) -> None:
+    """Calls a function at some roll rates to both sides, at some speeds.
 
     Raises
     ------
     ScenarioError
         It returns no finite number, or it is not odd in the roll rate where a search mirrors one side.
     """
-    for speed in SPEEDS:
+    for speed in speeds:
         for roll_rate in ROLL_RATES:
             right, left = torque(law, roll_rate, speed), torque(law, -roll_rate, speed)
             if mirrored and not math.isclose(right, -left, rel_tol=1e-9, abs_tol=1e-12):

@@ -9,6 +9,8 @@ from typing import Any, Union
 from tqdm.auto import tqdm as tqdm_auto
 from tqdm.std import tqdm
 
+from .errors import ScenarioError
+
 #: Called with the numbers of finished and of all parts.
 Report = Callable[[int, int], Any]
 Progress = Union[bool, Report, None]
@@ -20,7 +22,14 @@ def reporting(progress: Progress, name: str, unit: str) -> Iterator[Report | Non
 
     ``progress``: None for a bar on a terminal, True for a bar everywhere, False for none, or a function of the numbers of
     finished and of all parts.
+
+    Raises
+    ------
+    ScenarioError
+        It is something else.
     """
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
+        raise ScenarioError(f"progress = {progress!r}: expected None, True, False or a function", "progress")
     if progress is False:
         yield None
     elif callable(progress):

@@ -12,7 +12,7 @@ import xarray as xr
 
 from . import _core
 from ._bicycle import as_bicycle
-from ._check import doubt_units, plain, warn
+from ._check import doubt_units, kind, plain, warn
 from ._data import document
 from .errors import ScenarioError, ScenarioWarning
 
@@ -89,7 +89,7 @@ def read(base: Any) -> dict[str, Any]:
     if isinstance(base, (str, Path)):
         content: dict[str, Any] = json.loads(_core.read(base))
         return content
-    raise ScenarioError(f"a {type(base).__name__} is no scenario; expected a dictionary, a file, or a result", "scenario")
+    raise ScenarioError(f"{kind(base)} is no scenario; expected a dictionary, a file, or a result", "scenario")
 
 
 def merge(base: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from . import _core, _dask
-from ._check import plain, warn
+from ._check import kind, plain, warn
 from ._check import threads as as_threads
 from ._data import attributes, variable
 from ._progress import Progress, Report, reporting
@@ -69,7 +69,7 @@ def sweep(
         After Ctrl-C, with the finished cells in ``result``.
     """
     if not isinstance(over, Mapping):
-        raise ScenarioError(f"over: a {type(over).__name__}; expected a dictionary of axes and their values", "over")
+        raise ScenarioError(f"over: {kind(over)}; expected a dictionary of axes and their values", "over")
     threads = as_threads(threads)
     axes = [axis(key, values) for key, values in over.items()]
     data = as_scenario(scenario, **short(changes, "search"))
@@ -115,6 +115,8 @@ def axis(key: str, values: Any) -> str:
     """An axis in the form of the command line: KEY=VALUES."""
     names = dict(_core.axes())
     name = names.get(key, key.replace("_", "-") if key not in names.values() else key)
+    if name not in names.values():
+        raise ScenarioError(f"over: {key!r} is no axis; expected one of {', '.join(names)}", key)
     if isinstance(values, (str, Mapping)) or not hasattr(values, "__iter__"):
         raise ScenarioError(f"over[{key!r}] = {values!r}: expected a sequence of values", key)
     items = [item(name, value, f"{key}[{i}]") for i, value in enumerate(values)]
@@ -124,8 +126,7 @@ def axis(key: str, values: Any) -> str:
 def item(name: str, value: Any, key: str) -> str:
     """A value of an axis as text."""
     if isinstance(value, (Mapping, list, tuple)) or callable(value) or np.ndim(value) > 0:
-        kind = type(value).__name__
-        raise ScenarioError(f"{key}: a {kind}; the value of an axis is a number or text, a table the name of its file", key)
+        raise ScenarioError(f"{key}: {kind(value)}; the value of an axis is a number or text, a table the name of its file", key)
     value = plain(value, key)
     if value is None:
         return "none"

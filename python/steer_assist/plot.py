@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
+from ._check import kind
 from ._data import require
 from .errors import ScenarioError
 
@@ -16,6 +17,15 @@ __all__ = ["basin", "eigen", "plane", "ride", "sweep"]
 
 
 def axis_of(ax: Axes | None) -> Axes:
+    """The axis to draw on.
+
+    Raises
+    ------
+    ScenarioError
+        It is something else.
+    """
+    if ax is not None and not isinstance(ax, Axes):
+        raise ScenarioError(f"ax: {kind(ax)} is no axis of matplotlib", "ax")
     return plt.subplots()[1] if ax is None else ax
 
 

@@ -227,3 +227,45 @@ def test_doubts_are_warnings():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         sa.ride(bicycle=parameters, **START)
+
+
+def test_the_caller_s_words():
+    """Arguments that are wrong together or in kind are named as they were given."""
+    with pytest.raises(sa.ScenarioError, match="torque_limit_nm: acts on the flashed code only") as raised:
+        sa.ride(law=lambda rate, speed: 5.0 * rate, torque_limit_nm=3, **START)
+    assert raised.value.key == "torque_limit_nm"
+    with pytest.raises(sa.ScenarioError, match="'foo' is no axis; expected one of .*torque_limit_nm") as raised:
+        sa.sweep(over={"foo": [1]})
+    assert raised.value.key == "foo"
+    with pytest.raises(sa.ScenarioError, match="limits.rise_nm_s=abc") as raised:
+        sa.check(parameters={"limits.rise_nm_s": "abc"})
+    assert raised.value.key == "parameters.limits.rise_nm_s" and raised.value.range is None
+    with pytest.raises(sa.ScenarioError) as raised:
+        sa.check(torque_limit_nm=500)
+    assert raised.value.range == (0.1, 50.0)
+    with pytest.raises(sa.ScenarioError, match="roots") as raised:
+        sa.eigen(roots=8, speeds=[4])
+    assert raised.value.key == "roots"
+    with pytest.raises(sa.ScenarioError, match="an int is no scenario"):
+        sa.ride(3)
+    with pytest.raises(sa.ScenarioError, match="progress = 3") as raised:
+        sa.basin(speeds=[4], progress=3)
+    assert raised.value.key == "progress"
+    with pytest.raises(sa.ScenarioError, match="must be given") as raised:
+        sa.ride(speed_m_s=None, steer_rate_rad_s=1)
+    assert "NaN" not in str(raised.value)
+    with pytest.raises(sa.ScenarioError, match="an int is no axis of matplotlib") as raised:
+        sa.plot.eigen(sa.eigen(speeds=[4]), ax=3)
+    assert raised.value.key == "ax"
+
+
+def test_a_law_of_a_ride_is_tried_at_its_speed():
+    """The first calls of a function, before the ride, are at the ride's speed."""
+    speeds = []
+
+    def law(roll_rate_rad_s, speed_m_s):
+        speeds.append(speed_m_s)
+        return 5.0 * roll_rate_rad_s
+
+    sa.ride(law=law, speed_m_s=5, steer_rate_rad_s=1, time_limit_s=0.1)
+    assert speeds[0] == 5.0 and all(4.0 < speed < 6.0 for speed in speeds)

@@ -1,5 +1,9 @@
 """Results as NetCDF files: every kind through every backend, and equal to the files of the command line."""
 
+import re
+import tomllib
+from pathlib import Path
+
 import numpy as np
 import pytest
 import steer_assist as sa
@@ -121,3 +125,16 @@ def test_a_sweep_is_the_command_lines_file(results, sim_host, tmp_path):
         for axis in ("torque_limit", "sensor_delay"):
             assert file[axis].long_name == results["sweep"][axis].long_name
     assert names >= {"torque_limit", "sensor_delay", "speed_m_s", "height", "capped", "area", "mean_height", "area_capped"}
+
+
+def test_the_extra_for_netcdf_has_what_the_first_example_writes_with():
+    """The engine of the page's first example is not required: the page's first install line has its extra."""
+    root = Path(__file__).parents[2]
+    page = (root / "docs/python.md").read_text()
+    project = tomllib.loads((root / "python/pyproject.toml").read_text())["project"]
+    example = page.split("## In ten lines")[1].split("```")[1]
+    engine = re.search(r'engine="(\w+)"', example)
+    assert engine is not None
+    extra = " ".join(project["optional-dependencies"]["netcdf"])
+    assert engine[1] in extra and "h5py" in extra
+    assert page.split("## Install")[1].split("pip install ")[1].startswith("'./python[netcdf]'")

@@ -86,6 +86,18 @@ impl From<ParamError> for SetError {
     }
 }
 
+/// A parameter that can't be set to a value.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{key}={value}: {error}")]
+pub struct Rejected {
+    /// Its name.
+    pub key: String,
+    /// The value.
+    pub value: Value,
+    /// The reason.
+    pub error: SetError,
+}
+
 /// Sets the parameter `key` to a value in text form.
 ///
 /// # Errors

@@ -12,6 +12,10 @@ pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
     let setup = Setup::new(scenario).map_err(|e| named(scenario, &e))?;
     setup.notes.iter().for_each(|note| complain_once(&format!("note: {note}")));
     setup.warnings().for_each(|warning| complain_once(&format!("warning: {warning}")));
+    let drawn = scenario.uncertain.is_some() || scenario.rider_draws.is_some();
+    if scenario.options.contains("plant.seed") && !drawn && setup.conditions.plant.exact() {
+        complain_once("warning: --seed has no effect: sensors and motor are exact, and nothing is drawn");
+    }
     Ok(setup)
 }
 

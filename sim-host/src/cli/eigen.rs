@@ -3,8 +3,8 @@
 use super::options::{Bicycle as BicycleOptions, Options, Rider as RiderOptions};
 use super::outputs::{Further, OutputArgs, Results, complain, complain_once};
 use super::scenario_error::failure;
-use super::{Ended, Failure, warn};
-use crate::commands::eigen::{EigenTask, Eigenvalues, eigen};
+use super::{Ended, Failure, interrupt, warn};
+use crate::commands::eigen::{EigenTask, Eigenvalues, eigen_until};
 use crate::eigen::{CriticalSpeeds, LinearActuator, Mode, Stability};
 use crate::range::{TimeError, time};
 use crate::report::figure::{self, EigenFigure};
@@ -46,11 +46,11 @@ pub(super) struct Args {
     /// law and rider
     #[arg(long, default_value = "0:10:0.1", value_parser = speeds::parse_signed, value_name = "A:B:STEP", allow_hyphen_values = true)]
     speeds: std::vec::Vec<f64>,
-    /// With a rider or a delay: number of rightmost eigenvalues, 4 to 40; otherwise there are four, or five
-    #[arg(long, default_value_t = 12, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=40))]
-    roots: u8,
-    /// Adds the modes to the table
-    #[arg(long)]
+    /// With a rider or a delay: number of rightmost eigenvalues, 4 to 40 [default: 12]; otherwise there are four, or five
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(4..=40))]
+    roots: Option<u8>,
+    /// Adds the modes to the table of --csv
+    #[arg(long, requires = "csv")]
     modes: bool,
     #[command(flatten)]
     outputs: OutputArgs,
@@ -99,10 +99,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         capsize: args.capsize,
         actuator: args.actuator.actuator(),
         speeds: args.speeds.clone(),
-        roots: usize::from(args.roots),
+        roots: args.roots.map(usize::from),
     };
     let outputs = args.outputs.open(Further::default())?;
-    let found = eigen(&task).map_err(|e| failure(&Scenario::default(), e))?;
+    interrupt::install_saying("nothing is written");
+    let found = eigen_until(&task, &interrupt::stopped).map_err(|e| failure(&Scenario::default(), e))?;
+    let Some(found) = found else { return Ok(Ended::Interrupted) };
     let Eigenvalues { document, count, values, modes, stability } = found;
     let Stability { critical, ranges, .. } = stability;
     document.warnings.iter().for_each(|doubt| complain_once(&format!("warning: {doubt}")));

@@ -3,7 +3,7 @@
 use super::CommandError;
 use crate::bicycle::catalogue::Bicycle;
 use crate::eigen::{
-    CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes, roots, stability,
+    CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes_until, roots, stability,
 };
 use crate::range::within;
 use crate::report::document::EigenDocument;
@@ -15,6 +15,9 @@ use crate::scenario::speeds::FASTEST_M_S;
 use control::{Capsize, Law};
 use nalgebra::Complex;
 use rayon::prelude::*;
+
+/// Number of eigenvalues where there are infinitely many.
+const ROOTS: usize = 12;
 
 /// A bicycle with what steers it, and the speeds of the analysis.
 #[derive(Clone, Debug)]
@@ -31,8 +34,8 @@ pub struct EigenTask {
     pub actuator: LinearActuator,
     /// Forward speeds \[m/s\].
     pub speeds: Vec<f64>,
-    /// Number of rightmost eigenvalues, if there is a delay.
-    pub roots: usize,
+    /// Number of rightmost eigenvalues, if a rider or a delay makes infinitely many; `None` for 12.
+    pub roots: Option<usize>,
 }
 
 /// Eigenvalues with their modes.
@@ -50,11 +53,15 @@ pub struct Eigenvalues {
     pub stability: Stability,
 }
 
-/// Computes the eigenvalues, on all cores of the current rayon pool.
+/// Computes the eigenvalues, on all cores of the current rayon pool. `stop` is called at every speed, and there are none once it
+/// returns true.
 ///
 /// # Errors
 /// A speed out of range; an actuator or a speed that does not suit law and rider.
-pub fn eigen(task: &EigenTask) -> Result<Eigenvalues, CommandError> {
+pub fn eigen_until(
+    task: &EigenTask,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Result<Option<Eigenvalues>, CommandError> {
     let EigenTask { bicycle, rider, law: (law_name, law), actuator, speeds, .. } = task;
     if speeds.is_empty() {
         return Err(CommandError::choice("speeds", "none is given"));
@@ -69,16 +76,22 @@ pub fn eigen(task: &EigenTask) -> Result<Eigenvalues, CommandError> {
         return Err(CommandError::choice("speeds", format!("{v} m/s: {reason}")));
     }
     let count = match (rider, actuator.delay_s > 0.0) {
+        (None, false) if task.roots.is_some() => {
+            let reason =
+                "without a rider and a delay of the actuator there are four eigenvalues, with its lag five";
+            return Err(CommandError::Idle { name: "roots", reason });
+        }
         (None, false) => 4 + usize::from(actuator.time_constant_s > 0.0),
-        _ => task.roots,
+        _ => task.roots.unwrap_or(ROOTS),
     };
     let capsize = task.capsize.unwrap_or_default();
     let feedback = Feedback::new(law.clone(), capsize);
     let model = Model::new(&bicycle.parameters, feedback, rider.as_ref().map(|one| one.rider.clone()));
     let model = model.with_actuator(*actuator)?;
     let stability = stability(&model);
-    let values: Vec<_> = speeds.par_iter().map(|&v| roots(&model.at(v), count)).collect();
-    let modes = modes(&model, speeds, count);
+    let at = |&v: &f64| (!stop()).then(|| roots(&model.at(v), count));
+    let Some(values) = speeds.par_iter().map(at).collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let Some(modes) = modes_until(&model, speeds, count, stop) else { return Ok(None) };
     let CriticalSpeeds { v_d, v_w, v_c } = stability.critical;
     let document = EigenDocument {
         schema: SCHEMA,
@@ -98,7 +111,7 @@ pub fn eigen(task: &EigenTask) -> Result<Eigenvalues, CommandError> {
         eigenvalues: values.iter().map(|of_speed| of_speed.iter().map(|e| [e.re, e.im]).collect()).collect(),
         modes: modes.iter().map(|mode| (mode.name.clone(), per_speed(mode, speeds.len()))).collect(),
     };
-    Ok(Eigenvalues { document, count, values, modes, stability })
+    Ok(Some(Eigenvalues { document, count, values, modes, stability }))
 }
 
 /// The roots of a mode at each speed, in the document's form.

@@ -28,6 +28,14 @@ pub enum CommandError {
         /// The value and what is allowed.
         reason: Box<dyn Error + Send + Sync>,
     },
+    /// A choice beside the scenario has no effect on it.
+    #[error("{name}: {reason}")]
+    Idle {
+        /// Its name, which is that of the option.
+        name: &'static str,
+        /// Why it has none.
+        reason: &'static str,
+    },
     /// The axes of a sweep can't be used.
     #[error(transparent)]
     Sweep(#[from] SweepError),
@@ -67,6 +75,7 @@ impl CommandError {
             Self::Choice { name, reason } => {
                 Some(number(reason.as_ref()).and_then(|error| error.key).unwrap_or(name).into())
             }
+            Self::Idle { name, .. } => Some((*name).into()),
             Self::Sweep(error) => error.key().map(Into::into),
             Self::Cells { .. } => None,
             Self::Cell { key, .. } => key.clone(),

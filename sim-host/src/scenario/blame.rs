@@ -2,10 +2,12 @@
 
 use super::setting::DRAWS;
 use super::speeds::{FASTEST_M_S, SpeedsError};
+use super::text::decimal;
 use super::text_error::TextError;
 use super::ticks::TicksError;
 use crate::basin::SearchError;
 use crate::bicycle::{ParameterError, SetError};
+use crate::parameters::{self, Rejected};
 use crate::range::{RangeError, TimeError};
 use crate::ride::ConditionsError;
 use control::param::ParamError;
@@ -65,5 +67,10 @@ pub fn bounds(reason: &(dyn Error + 'static)) -> Option<(f64, f64)> {
     if let Some(SetError::Parameter(ParameterError::Range { min, max, .. })) = reason.downcast_ref() {
         return Some((*min, *max));
     }
-    reason.downcast_ref().map(|error: &ParamError| (error.leaf.min.into(), error.leaf.max.into()))
+    let of_rejected = || match &reason.downcast_ref::<Rejected>()?.error {
+        parameters::SetError::Range(error) => Some(error),
+        _ => None,
+    };
+    let parameter: Option<&ParamError> = reason.downcast_ref().or_else(of_rejected);
+    parameter.map(|error| (decimal(error.leaf.min), decimal(error.leaf.max)))
 }

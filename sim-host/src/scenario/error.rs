@@ -8,6 +8,7 @@ use super::plant_error::PlantChoiceError;
 use crate::basin::SearchError;
 use crate::bicycle::catalogue::BicycleError;
 use crate::bicycle::{ParameterError, SetError};
+use crate::parameters::Rejected;
 use crate::plant::PlantError;
 use crate::range::RangeError;
 use crate::ride::ConditionsError;
@@ -92,9 +93,6 @@ pub enum ScenarioError {
         /// The error.
         error: ParamError,
     },
-    /// The ideal law with limits or sensor delay.
-    #[error("limits and sensor delay act on --assist firmware only; the ideal law has none")]
-    Ideal,
 }
 
 impl ScenarioError {
@@ -102,6 +100,9 @@ impl ScenarioError {
     pub fn key(&self) -> Option<String> {
         match self {
             Self::Syntax { reason, .. } => reason.key().map(Into::into),
+            Self::Value { key, reason } if reason.is::<Rejected>() => {
+                reason.downcast_ref().map(|Rejected { key: inner, .. }| format!("{key}.{inner}"))
+            }
             Self::Value { key, reason } => Some(match reason.downcast_ref() {
                 Some(SetError::Parameter(ParameterError::Range { key: inner, .. })) if key == "bicycle" => {
                     format!("bicycle.parameters.{inner}")
@@ -117,7 +118,6 @@ impl ScenarioError {
             Self::Parameter(error) => Some(format!("parameters.{}.{}", error.leaf.group, error.leaf.name)),
             Self::Conditions(error) => conditions_key(error).map(Into::into),
             Self::Flashed { .. } => Some("bicycle".into()),
-            Self::Ideal => Some("assist".into()),
             Self::Read { .. } => None,
         }
     }

@@ -1,6 +1,7 @@
 //! The law of a scenario: a name, a table file, or a table in place.
 
 use super::content::Content;
+use super::text::decimal;
 use control::law::{LAWS, LawError};
 use control::param::{ParamError, ParamSpec};
 use control::{Capsize, GainSchedule, Law};
@@ -119,13 +120,11 @@ pub struct LawTable {
 /// A law as a value of a scenario: by name, or its table in place.
 pub fn content(name: &str, law: &Law) -> Content<LawTable> {
     let Law::Table(table) = law else { return Content::Named(law.to_string()) };
-    // The shortest decimal number that is the same single: 0.1, not 0.10000000149011612.
-    let exact = |x: f32| x.to_string().parse().unwrap_or_else(|_| f64::from(x));
     let points = table.points();
     Content::Given(Box::new(LawTable {
         name: Some(name.into()),
-        speed_m_s: points.iter().map(|point| exact(point.0)).collect(),
-        gain_nm_s_rad: points.iter().map(|point| exact(point.1)).collect(),
+        speed_m_s: points.iter().map(|point| decimal(point.0)).collect(),
+        gain_nm_s_rad: points.iter().map(|point| decimal(point.1)).collect(),
         source: None,
     }))
 }

@@ -9,7 +9,7 @@ use super::{AssistKind, Preset, Scenario, cut_files, law, parameter_file::Parame
 use crate::bicycle::Geometry;
 use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::onboard::fit;
-use crate::parameters;
+use crate::parameters::{self, Rejected};
 use crate::plant::Plant;
 use crate::range::within;
 use crate::ride::{Assist, Conditions, IdealLaw, ScheduleSpeed};
@@ -112,7 +112,7 @@ impl Scenario {
                 within(key, value, -most, most).map_err(|e| ScenarioError::value(&format!("start.{key}"), e))
             };
             if start.speed_m_s.is_nan() {
-                let reason = format!("must be given, from -{FASTEST_M_S} to {FASTEST_M_S} m/s, not NaN");
+                let reason = format!("must be given, from -{FASTEST_M_S} to {FASTEST_M_S} m/s");
                 return Err(ScenarioError::value("start.speed_m_s", reason));
             }
             given("speed_m_s", start.speed_m_s, FASTEST_M_S)?;
@@ -122,7 +122,7 @@ impl Scenario {
         self.search.resolve(self.is_ridden())?;
         if let Some(plane) = &self.plane {
             if plane.speed.is_nan() {
-                return Err(ScenarioError::value("plane.speed", "must be given, from 0 to 30 m/s, not NaN"));
+                return Err(ScenarioError::value("plane.speed", "must be given, from 0 to 30 m/s"));
             }
             plane.check().map_err(|e| ScenarioError::value("plane", e))?;
         }
@@ -223,8 +223,10 @@ impl Scenario {
 
     fn set_parameters(&self, config: &mut Config) -> Result<(), ScenarioError> {
         self.parameters.iter().try_for_each(|(key, value)| {
-            parameters::set_value(config, key, value)
-                .map_err(|e| ScenarioError::value("parameters", format!("{key}={value}: {e}")))
+            parameters::set_value(config, key, value).map_err(|error| {
+                let (key, value) = (key.clone(), value.clone());
+                ScenarioError::value("parameters", Rejected { key, value, error })
+            })
         })
     }
 
@@ -258,10 +260,12 @@ impl Scenario {
             }
             _ => ScenarioError::Parameter(e),
         })?;
-        if self.assist == AssistKind::Ideal && (limited || self.sensor_delay_s > 0.0) {
-            return Err(ScenarioError::Ideal);
-        }
         let ideal = self.assist == AssistKind::Ideal;
+        if let Some(key) = self.flashed_only(limited).filter(|_| ideal) {
+            let reason = "acts on the flashed code only (assist firmware); an ideal law, as every function is, has neither \
+                          limits nor sensor delay";
+            return Err(ScenarioError::value(key, reason));
+        }
         if let Some(key) = self.parameters.keys().find(|key| ideal && !key.starts_with(IDEAL_PARAMETERS)) {
             let reason =
                 format!("{key} acts on --assist firmware only; the ideal law has {IDEAL_PARAMETERS}* alone");
@@ -275,6 +279,20 @@ impl Scenario {
                 Assist::Ideal(Box::new(IdealLaw { law: law.clone(), dead_band }))
             }
         })
+    }
+
+    /// The key of a sensor delay, or of what made the controller's configuration `limited`, except single parameters.
+    fn flashed_only(&self, limited: bool) -> Option<&'static str> {
+        let value = |limit: &Option<OrNone<f64>>| limit.is_some_and(|limit| limit != OrNone::Off);
+        let limits = [
+            ("torque_limit_nm", value(&self.torque_limit_nm)),
+            ("rate_limit_nm_s", value(&self.rate_limit_nm_s)),
+            ("taper_m_s", self.taper_m_s.is_some_and(|taper| taper != OrNone::Off)),
+            ("preset", self.preset == Preset::Product),
+            ("parameter_file", self.parameter_file.is_some()),
+        ];
+        let of_limit = limits.into_iter().find(|(_, given)| limited && *given).map(|(key, _)| key);
+        of_limit.or((self.sensor_delay_s > 0.0).then_some("sensor_delay_s"))
     }
 
     fn conditions(

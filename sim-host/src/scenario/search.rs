@@ -86,6 +86,10 @@ impl SearchChoice {
             method: self.method,
         };
         search.check()?;
+        if self.adaptive_speeds.is_some() && search.speeds.len() < 2 {
+            let reason = "speeds are added between two or more, and search.speeds has one";
+            return Err(ScenarioError::value("search.adaptive_speeds", reason));
+        }
         Rounds { adaptive: self.adaptive_speeds, ..Rounds::default() }.check()?;
         Ok(search)
     }

@@ -107,6 +107,49 @@ fn missing_eigenvalues_are_reported() {
     assert_eq!(bench.run("eigen --rider smart --roots 8 --speeds 4").stderr, "");
 }
 
+/// Situation: options that act on nothing beside the others.
+/// Action: run with them, and with what they act on.
+/// Must hold: refused as wrong usage, or with the key; a seed that draws nothing is a warning.
+#[test]
+fn options_that_act_on_nothing_are_told() {
+    let bench = Bench::new(PROGRAM);
+    for (line, named) in
+        [("eigen --roots 8 --speeds 4", "--roots: without a rider"), ("eigen --modes --speeds 4", "--csv")]
+    {
+        let run = bench.run(line);
+        assert!(run.code == Some(2) && run.stderr.contains(named), "{line}: {run:?}");
+    }
+    for line in
+        ["eigen --roots 8 --speeds 4 --law h --actuator-delay 5ms", "eigen --modes --speeds 4 --csv m.csv"]
+    {
+        let run = bench.run(line);
+        assert!(run.code == Some(0) && run.stderr.is_empty(), "{line}: {run:?}");
+    }
+    bench.run("basin --speeds 4 --adaptive-speeds").rejected_naming(&["--adaptive-speeds", "has one"]);
+    let seeded = "ride --speed 4 --seed 5";
+    let warned = |line: &str| bench.run(line).stderr.contains("--seed has no effect");
+    assert!(warned(seeded));
+    assert!(!warned(&format!("{seeded} --sensor gyro:noise=0.01")));
+    assert!(!warned("ride --speed 4"));
+}
+
+/// Situation: a start without a speed, and limits of the ideal law.
+/// Action: run.
+/// Must hold: the message has the range and the option, and no value that nobody gave.
+#[test]
+fn messages_are_about_what_was_given() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("still.toml", "start = { steer_rate_rad_s = 1 }\n");
+    let run = bench.run("ride --scenario still.toml");
+    assert!(run.code == Some(1) && run.stderr.contains("must be given, from -30 to 30 m/s"), "{run:?}");
+    assert!(!run.stderr.contains("NaN"), "{run:?}");
+    bench
+        .run("ride --speed 4 --assist ideal --torque-limit 3")
+        .rejected_naming(&["--torque-limit", "flashed code"]);
+    bench.run("ride --speed 4 --assist ideal --sensor-delay 5ms").rejected_naming(&["--sensor-delay"]);
+    bench.run("ride --speed 4 --assist ideal --preset product").rejected_naming(&["--preset"]);
+}
+
 /// Situation: the table of a ride of 6 s.
 /// Action: read its times.
 /// Must hold: each is the number of its milliseconds as typed, no multiple of the nearest number to 1 ms.

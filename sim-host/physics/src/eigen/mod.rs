@@ -14,7 +14,7 @@ mod system;
 pub use actuator::{ActuatorError, LinearActuator};
 pub use critical::{CriticalSpeeds, SEARCH_TO_M_S, critical_speeds};
 pub use feedback::{Feedback, Intuitive, StaticFeedback};
-pub use modes::{Mode, REFERENCE_SPEED_M_S, modes};
+pub use modes::{Mode, REFERENCE_SPEED_M_S, modes, modes_until};
 pub use roots::{rightmost, roots};
 pub use stability::{Crossing, Stability, StabilityChange, stability};
 pub use system::{DelaySystem, Model};

@@ -34,6 +34,16 @@ pub struct Mode {
 /// `v_d` weave is two real roots. Where two modes meet, form a pair and separate again, each leaves on its
 /// side.
 pub fn modes(model: &Model, speeds: &[f64], count: usize) -> Vec<Mode> {
+    modes_until(model, speeds, count, &|| false).unwrap_or_default()
+}
+
+/// As [`modes`]; `stop` is called at every speed, and there are no modes once it returns true.
+pub fn modes_until(
+    model: &Model,
+    speeds: &[f64],
+    count: usize,
+    stop: &dyn Fn() -> bool,
+) -> Option<Vec<Mode>> {
     let (names, start) = named(model, count);
     let find = |v: f64| {
         let system = model.at(v);
@@ -48,6 +58,9 @@ pub fn modes(model: &Model, speeds: &[f64], count: usize) -> Vec<Mode> {
     for direction in [below.into_iter().rev().collect(), above] {
         let mut followed = Followed::new(REFERENCE_SPEED_M_S, &start);
         for i in direction {
+            if stop() {
+                return None;
+            }
             followed.go(speeds[i], SPEED_STEP, &find);
             for (curve, root) in curves.iter_mut().zip(followed.now()) {
                 curve[i] = *root;
@@ -61,7 +74,7 @@ pub fn modes(model: &Model, speeds: &[f64], count: usize) -> Vec<Mode> {
             None => modes.push(Mode { name, roots: vec![curve] }),
         }
     }
-    modes
+    Some(modes)
 }
 
 /// Names and roots at the reference speed.
