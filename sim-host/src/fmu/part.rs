@@ -91,7 +91,8 @@ const SPEED_M_S: f64 = 4.0;
 
 /// The scenario, with a speed where its start has none.
 pub fn with_speed(mut scenario: Scenario) -> Scenario {
-    if let Some(start) = scenario.start.as_mut().filter(|start| start.speed_m_s.is_nan()) {
+    let typed = scenario.options.contains("start.speed_m_s");
+    if let Some(start) = scenario.start.as_mut().filter(|start| start.speed_m_s.is_nan() && !typed) {
         start.speed_m_s = SPEED_M_S;
     }
     scenario

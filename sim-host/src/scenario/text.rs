@@ -16,7 +16,7 @@ pub(super) fn form(text: &str, wrong: &'static str) -> TextError {
 
 /// A number.
 pub(super) fn number(text: &str) -> Result<f64, TextError> {
-    text.trim().parse().ok().filter(|x: &f64| !x.is_nan()).ok_or_else(|| form(text, "not a number"))
+    text.trim().parse().map_err(|_| form(text, "not a number"))
 }
 
 /// The shortest decimal number that is the same single: 0.1, not 0.10000000149011612.

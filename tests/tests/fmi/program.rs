@@ -18,7 +18,7 @@ fn refused_exports() {
         ("bicycle --sensor-delay 1ms", &["exact sensors", "delays"]),
         ("controller --preset product --fault gyro:stuck@1s", &["exact sensors", "faults"]),
         ("controller --schedule-speed initial", &["--schedule-speed front or rear"]),
-        ("bicycle --speed nan", &["--speed", "`nan` is not a number"]),
+        ("bicycle --speed nan", &["--speed", "must be given"]),
         ("controller --torque-limit 500", &["torque", "500"]),
         ("bicycle --library nothing.so", &["nothing.so"]),
         ("bicycle --library /dev/null", &["/dev/null", "not the dynamic library"]),
