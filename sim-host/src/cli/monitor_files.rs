@@ -68,6 +68,7 @@ impl Mcap {
             Ok(_) => {}
             Err(error) => {
                 // It may still write when it is dropped.
+                #[cfg_attr(not(feature = "mcap"), allow(clippy::drop_non_drop))]
                 drop(self.recorder);
                 return Err(ended_early(&self.path, &self.file, self.whole, &error));
             }
