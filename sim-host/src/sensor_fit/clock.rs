@@ -10,8 +10,8 @@ use std::f64::consts::TAU;
 /// Length of a block in which drift between sensor and log clock is negligible \[s\].
 const BLOCK_S: f64 = 10.0;
 
-/// A gap of this many periods means that samples were lost.
-const LOST: f64 = 1.5;
+/// Samples before and after a gap that tell a late sample, after which the others catch up, from lost ones.
+const AROUND: usize = 10;
 
 pub(super) fn fit(all: &[Recorded], found: &mut Found) {
     let seconds: f64 = all.iter().map(span_s).sum();
@@ -44,24 +44,38 @@ fn span_s(one: &Recorded) -> f64 {
 /// Delay of each sample in a block relative to evenly spaced samples, from the earliest \[s\].
 fn lateness(one: &Recorded) -> Vec<f64> {
     let length = (BLOCK_S / one.period_s).round() as usize;
-    let late = |block: &[Sample]| {
+    let late = |(block, places): (&[Sample], &[f64])| {
         let times: Vec<f64> = block.iter().map(|sample| sample.t_s - block[0].t_s).collect();
-        let mut places: Vec<f64> = Vec::with_capacity(times.len());
-        for time in &times {
-            let next = places.last().map_or(0.0, |place| place + 1.0);
-            let beyond = time / one.period_s - next;
-            places.push(next + if beyond >= LOST { beyond.round() } else { 0.0 });
-        }
         let n = times.len() as f64;
         let mean = |x: &[f64]| x.iter().sum::<f64>() / n;
-        let (t, p) = (mean(&times), mean(&places));
-        let along: f64 = times.iter().zip(&places).map(|(x, y)| (x - t) * (y - p)).sum();
+        let (t, p) = (mean(&times), mean(places));
+        let along: f64 = times.iter().zip(places).map(|(x, y)| (x - t) * (y - p)).sum();
         let slope = along / places.iter().map(|y| (y - p).powi(2)).sum::<f64>();
-        let off: Vec<f64> = times.iter().zip(&places).map(|(x, y)| x - t - slope * (y - p)).collect();
+        let off: Vec<f64> = times.iter().zip(places).map(|(x, y)| x - t - slope * (y - p)).collect();
         let earliest = off.iter().copied().fold(f64::INFINITY, f64::min);
         off.into_iter().map(move |x| x - earliest).collect::<Vec<_>>()
     };
-    one.track.samples.chunks_exact(length.max(3)).flat_map(late).collect()
+    let (samples, length, places) = (&one.track.samples, length.max(3), places(one));
+    samples.chunks_exact(length).zip(places.chunks_exact(length)).flat_map(late).collect()
+}
+
+/// Number of each sample, counted from the first, with those that were lost. Samples are lost where the earliest of
+/// the next [`AROUND`] samples is at least half a period behind the earliest of the last [`AROUND`].
+fn places(one: &Recorded) -> Vec<f64> {
+    let periods: Vec<f64> = one.track.samples.iter().map(|sample| sample.t_s / one.period_s).collect();
+    let earliest = |delays: &mut dyn Iterator<Item = f64>| delays.fold(f64::INFINITY, f64::min);
+    let mut places: Vec<f64> = Vec::with_capacity(periods.len());
+    for at in 0..periods.len() {
+        let next = places.last().map_or(0.0, |place| place + 1.0);
+        let last = at.saturating_sub(AROUND)..at;
+        let before =
+            earliest(&mut periods[last.clone()].iter().zip(&places[last]).map(|(t, place)| t - place));
+        let after = periods[at..].iter().take(AROUND).enumerate();
+        let after = earliest(&mut after.map(|(more, t)| t - next - more as f64));
+        let lost = if at == 0 { 0.0 } else { (after - before).round().max(0.0) };
+        places.push(next + lost);
+    }
+    places
 }
 
 /// Phase: delay relative to the gyro's sample, within a period.

@@ -34,8 +34,9 @@ pub(super) fn fit(all: &[Recorded], found: &mut Found) {
                 found.numbers.quantum[axis] = digits(step.value);
             }
             None => {
-                let name = found.sensor.axes().get(axis).copied().unwrap_or("its only");
-                found.left_out(format!("step: the values of axis {name} have no common step"));
+                let axis =
+                    found.sensor.axes().get(axis).map_or(String::new(), |name| format!(" of axis {name}"));
+                found.left_out(format!("step: the values{axis} have no common step"));
             }
         }
     }

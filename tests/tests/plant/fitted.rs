@@ -245,3 +245,30 @@ fn repeats_and_lateness_are_estimated() {
     }
     assert!(fit(Sensor::RiderTorque, &all).expect_err("none").to_string().contains("rider-torque"));
 }
+
+/// Situation: two minutes of an accelerometer at 100 Hz, stamped up to 0.2 ms late; none, six single samples, or six
+/// pairs in a row are lost.
+/// Action: fit a model.
+/// Must hold: the lateness is the jitter's, whichever samples are lost.
+#[test]
+fn lost_samples_are_not_late() {
+    let lost = |each: u64| {
+        let stays = |n: &u64| n % 2000 >= each || *n == 0;
+        let late = |n: u64| 2e-4 * ((n * 7919) % 1000) as f64 / 1000.0;
+        let sample = |n| Sample { t_s: n as f64 * 0.01 + late(n), value: [late(n), 0.0, 9.81] };
+        let track = |sensor| Track {
+            sensor,
+            samples: (0..12_000).filter(|n| stays(&(n + 1500))).map(sample).collect(),
+            made_up: [false; 3],
+        };
+        let tracks = [Sensor::Accel, Sensor::RearWheel].map(track).into();
+        let samples = Samples { tracks, ..Samples::default() };
+        let all = [Recording { samples, distance_m: Vec::new() }];
+        fit(Sensor::Accel, &all).expect("a model").jitter_s.expect("jitter")
+    };
+    for each in [0, 1, 2] {
+        let [most, worst] = lost(each);
+        assert!((1.8e-4..2.1e-4).contains(&most), "{each} lost: {most}");
+        assert!((1.9e-4..2.2e-4).contains(&worst), "{each} lost: {worst}");
+    }
+}
