@@ -50,5 +50,6 @@ pub mod weave;
 
 use physics::json;
 pub use physics::{
-    basin, bicycle, eigen, identify, integrate, num, perturbation, plant, range, ride, rider, tracking,
+    basin, bicycle, eigen, identify, input_file, integrate, num, perturbation, plant, range, ride, rider,
+    tracking,
 };

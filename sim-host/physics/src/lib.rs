@@ -27,6 +27,7 @@ pub mod bicycle;
 pub mod closed_loop;
 pub mod eigen;
 pub mod identify;
+pub mod input_file;
 pub mod json;
 pub mod perturbation;
 pub mod plant;

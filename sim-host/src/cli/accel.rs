@@ -1,8 +1,11 @@
 //! `sim-host bicycle accel`: accelerations of the nonlinear bicycle from a table of states.
 
 use super::bicycle_args::BicycleArgs;
+use super::outputs::complain;
 use super::{Failure, warn};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques, pitch_from_upright};
+use crate::input_file;
+use crate::recording::cut_line;
 use crate::report::output::Output;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -47,7 +50,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     warn(&bicycle);
     let output = Output::create(&args.csv)?;
     let file = args.states.display();
-    let text = std::fs::read_to_string(&args.states).map_err(|e| format!("can't read {file}: {e}"))?;
+    let text = input_file::recorded_text(&args.states).map_err(|e| format!("can't read {file}: {e}"))?;
+    if let Some(remark) = cut_line(&text) {
+        complain(&format!("warning: {file}: {remark}"));
+    }
     let answer =
         accelerations(&Geometry::new(&bicycle.parameters), &text).map_err(|e| format!("{file}: {e}"))?;
     Ok(output.finish(answer.as_bytes())?)

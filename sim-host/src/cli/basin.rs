@@ -180,7 +180,11 @@ fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -
     let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
     let at_least = if basin.capped() { "at least " } else { "" };
+    let (done, all) = (basin.columns.len(), search.speeds.len());
     match (&basin.columns[..], basin.mean_height()) {
+        _ if done < all => {
+            let _ = writeln!(text, "incomplete, {done} of {all} speeds: no area and no mean height");
+        }
         ([only], _) => {
             let _ = writeln!(
                 text,

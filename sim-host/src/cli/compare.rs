@@ -119,7 +119,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
                     ..setup.scenario
                 };
                 let scenario = json!(own);
-                Case { label, config, scenario, basin: found? }
+                let basin = found?;
+                let complete = basin.columns.len() == search.speeds.len();
+                Case { label, config, scenario, basin, complete }
             }
         };
         complete &= !interrupt::stopped();
@@ -186,7 +188,7 @@ fn named(label: &str, error: impl std::fmt::Display) -> Failure {
 
 /// Reads the outline from a file of `basin --json`.
 fn read(path: &str) -> Result<(Case, String), Failure> {
-    let text = std::fs::read_to_string(path)
+    let text = crate::input_file::text(std::path::Path::new(path))
         .map_err(|e| format!("`{path}` is neither LABEL=OPTIONS nor a file that can be read: {e}"))?;
     let document: Value = serde_json::from_str(&text).map_err(|e| format!("{path}: {e}"))?;
     let wrong = |what: &str| format!("{path}: no `{what}`; expected the document of `sim-host basin --json`");
@@ -227,7 +229,8 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
     let label =
         std::path::Path::new(path).file_stem().map_or(path.into(), |s| s.to_string_lossy().into_owned());
     let [config, scenario] = ["config", "scenario"].map(|key| document[key].clone());
-    let case = Case { label, config, scenario, basin: Basin { columns } };
+    let complete = columns.len() == speeds.len();
+    let case = Case { label, config, scenario, basin: Basin { columns }, complete };
     Ok((case, axis.into()))
 }
 
@@ -273,6 +276,10 @@ fn summary(document: &CompareDocument) -> String {
             let _ = write!(text, " {:>8}", d.map_or("-".into(), |d| format!("{sign}{d:.3}")));
         }
         text.push('\n');
+    }
+    for case in cases.iter().filter(|case| !case.complete) {
+        let (label, done) = (&case.label, case.speeds.len());
+        let _ = writeln!(text, "`{label}` is incomplete ({done} speeds): no area and no mean height");
     }
     if one_speed {
         text += "one speed: no area; compared by height\n";

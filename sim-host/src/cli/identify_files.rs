@@ -73,7 +73,7 @@ fn of_file(args: &WeaveArgs, pattern: &Pattern, path: &Path) -> Result<Recording
         return Err(unknown("gain", "--gain"));
     }
     law_of(&args.law, gain).map_err(|e| refused(e.to_string()))?;
-    let text = std::fs::read_to_string(path).map_err(|e| refused(format!("can't be read: {e}")))?;
+    let text = crate::input_file::recorded_text(path).map_err(|e| refused(format!("can't be read: {e}")))?;
     let record = read(&text, &args.columns()).map_err(|e| refused(e.to_string()))?;
     let weave = identify_segment(&record, args.settings()).map_err(|why| {
         let notes = record.notes.iter().map(|note| format!("; {note}")).collect::<String>();

@@ -88,14 +88,19 @@ fn summary(document: &PlaneDocument, plane: &Plane) -> String {
         let at_least = if document.area_capped { "at least " } else { "" };
         let _ = writeln!(text, "area {at_least}{area:.3} rad^2/s^2");
     }
-    let outline = plane.outline();
-    let most = |of: fn(&(f64, f64)) -> f64| outline.iter().map(of).fold(0.0, f64::max);
-    let _ = writeln!(
-        text,
-        "reaches {:.3} rad/s of steer rate and {:.3} rad/s of roll rate",
-        most(|p| p.0),
-        most(|p| p.1)
-    );
+    if document.complete {
+        let outline = plane.outline();
+        let most = |of: fn(&(f64, f64)) -> f64| outline.iter().map(of).fold(0.0, f64::max);
+        let _ = writeln!(
+            text,
+            "reaches {:.3} rad/s of steer rate and {:.3} rad/s of roll rate",
+            most(|p| p.0),
+            most(|p| p.1)
+        );
+    } else {
+        let (done, all) = (plane.rays.len(), document.search.rays);
+        let _ = writeln!(text, "incomplete, {done} of {all} rays: no area");
+    }
     let count = |is: fn(&crate::basin::Ray) -> bool| plane.rays.iter().filter(|ray| is(ray)).count();
     let flat = count(|ray| matches!(ray.column.beyond, Some(FallCause::LaidFlat | FallCause::TooQuick)));
     if flat > 0 {

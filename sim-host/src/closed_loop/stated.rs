@@ -94,7 +94,7 @@ impl StatedLaw {
         let file = path.display().to_string();
         let read = |error| StatedError::Read { file: file.clone(), error };
         let syntax = |error| StatedError::Syntax { file: file.clone(), error: Box::new(error) };
-        let law: Self = toml::from_str(&std::fs::read_to_string(path).map_err(read)?).map_err(syntax)?;
+        let law: Self = toml::from_str(&crate::input_file::text(path).map_err(read)?).map_err(syntax)?;
         let gains = law.gain.iter().map(|g| (format!("gain of {}", g.signal.name()), &g.speed_m_s, &g.gain));
         let responses = law.response.iter().map(|r| {
             (format!("response to {} at {} Hz", r.input.name(), r.frequency_hz), &r.speed_m_s, &r.magnitude)

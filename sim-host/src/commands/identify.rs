@@ -144,7 +144,10 @@ pub fn ready(choice: &IdentifyChoice, file: &Path) -> Result<ReadyRecord, Failur
     let concerning = recording.remarks.iter().filter(|remark| map.concerns_perturbation(remark));
     prepared.remarks.splice(0..0, concerning.map(ToString::to_string));
     let (problem, plan) = problem(choice, &prepared);
-    let record = RecordEntry { sha256: sha256(&std::fs::read(file)?), ..entry(&name, &prepared) };
+    let record = RecordEntry {
+        sha256: sha256(&crate::input_file::bytes(file, crate::input_file::LARGEST_RECORDING)?),
+        ..entry(&name, &prepared)
+    };
     Ok(ReadyRecord { record, config: config(choice, &problem, &plan), problem, plan })
 }
 

@@ -240,7 +240,8 @@ impl Replay {
         if !self.faults.is_empty() {
             return Err(format!("{name}: --fault acts on recordings of samples, not on frames").into());
         }
-        let bytes = std::fs::read(path).map_err(|error| format!("can't read {name}: {error}"))?;
+        let bytes = crate::input_file::bytes(path, crate::input_file::LARGEST_RECORDING)
+            .map_err(|error| format!("can't read {name}: {error}"))?;
         let all = frames(&bytes).map_err(|error| format!("{name}: {error}"))?;
         let (plan, fitted) = self.plan(None)?;
         let choice = &self.choice;

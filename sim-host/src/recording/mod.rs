@@ -19,5 +19,5 @@ pub(crate) mod stamp;
 pub mod table;
 
 pub use columns::{Column, Group, Recording};
-pub use read::{ReadOptions, RecordingError, frames, read};
+pub use read::{ReadOptions, RecordingError, cut_line, frames, read};
 pub use remarks::Remark;

@@ -3,6 +3,7 @@
 use super::database::Database;
 use super::frames::Frames;
 use super::{Recording, Remark, asc, blf, candump, decode, mdf, table};
+use crate::input_file::{self, LARGEST_RECORDING, LARGEST_TEXT};
 use std::path::{Path, PathBuf};
 
 /// Why a file cannot be used.
@@ -93,14 +94,29 @@ fn undecoded(bytes: &[u8]) -> Result<(Recording, Frames), Remark> {
         (Recording::default(), blf::parse(bytes)?)
     } else {
         let text = String::from_utf8_lossy(bytes);
-        if candump::is_one(&text) {
+        let (mut recording, frames) = if candump::is_one(&text) {
             (Recording::default(), candump::parse(&text)?)
         } else if asc::is_one(&text) {
             (Recording::default(), asc::parse(&text)?)
         } else {
             (table::parse(&text)?, Frames::default())
+        };
+        let cut = cut_line(&text);
+        let mut known = recording.remarks.iter().chain(&frames.remarks);
+        if cut.is_some() && !known.any(|remark| remark.line == cut.as_ref().and_then(|cut| cut.line)) {
+            recording.remarks.extend(cut);
         }
+        (recording, frames)
     })
+}
+
+/// A remark on a last line without its end, which may be cut within its last value; the line is used as it is, as
+/// some loggers never end it.
+pub fn cut_line(text: &str) -> Option<Remark> {
+    let line = text.lines().count() as u64;
+    let what = "the last line has no end; if the file was cut, its last value may be truncated".to_owned();
+    let cut = !text.is_empty() && !text.ends_with(['\n', '\r']);
+    cut.then_some(Remark { line: Some(line), column: None, what })
 }
 
 /// Adds the decoded frames to a recording.
@@ -146,7 +162,8 @@ fn with_frames(
 
 /// Reads a database.
 fn database(path: &Path) -> Result<Database, RecordingError> {
-    let bytes = std::fs::read(path).map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
+    let bytes = input_file::bytes(path, LARGEST_TEXT)
+        .map_err(|error| RecordingError::Read { path: path.to_owned(), error })?;
     parsed(&bytes).map_err(|remark| RecordingError::Content { path: path.to_owned(), remark })
 }
 
@@ -162,7 +179,7 @@ fn parsed(_: &[u8]) -> Result<Database, Remark> {
 
 /// The bytes of a file, decompressed if necessary.
 fn bytes(path: &Path) -> Result<Vec<u8>, RecordingError> {
-    std::fs::read(path)
+    input_file::bytes(path, LARGEST_RECORDING)
         .and_then(unpacked)
         .map_err(|error| RecordingError::Read { path: path.to_owned(), error })
 }
@@ -172,8 +189,6 @@ fn unpacked(bytes: Vec<u8>) -> std::io::Result<Vec<u8>> {
     if !bytes.starts_with(&GZIP) {
         return Ok(bytes);
     }
-    let mut plain = Vec::new();
-    std::io::Read::read_to_end(&mut flate2::read::MultiGzDecoder::new(bytes.as_slice()), &mut plain)
-        .map_err(|error| std::io::Error::new(error.kind(), format!("gzip: {error}")))?;
-    Ok(plain)
+    input_file::within(flate2::read::MultiGzDecoder::new(bytes.as_slice()), LARGEST_RECORDING)
+        .map_err(|error| std::io::Error::new(error.kind(), format!("gzip: {error}")))
 }

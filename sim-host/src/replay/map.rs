@@ -174,7 +174,7 @@ impl Map {
         }
         let known = || SHIPPED.map(|(name, _)| name).join(", ");
         let read = |error| MapError::Read { name: name.into(), error, known: known() };
-        Self::parse(&std::fs::read_to_string(Path::new(name)).map_err(read)?).map_err(content)
+        Self::parse(&crate::input_file::text(Path::new(name)).map_err(read)?).map_err(content)
     }
 
     /// Parses a map.

@@ -43,6 +43,8 @@ pub struct CaseEntry {
     pub speeds: Vec<f64>,
     /// The outline \[rad/s\].
     pub upper: Vec<f64>,
+    /// False after an interruption, also of the search in a file: speeds and all measures are then missing.
+    pub complete: bool,
     /// Area under it, trapezoidal rule \[rad m/s^2\]; null at a single speed.
     pub area: Option<f64>,
     /// Mean height \[rad/s\].
@@ -71,13 +73,25 @@ pub struct Case {
     pub scenario: serde_json::Value,
     /// Its outline; a case from a file has no scan and no border rides.
     pub basin: Basin,
+    /// Whether all its speeds are searched; it has no area and no mean height otherwise.
+    pub complete: bool,
+}
+
+impl Case {
+    fn area(&self) -> Option<f64> {
+        self.basin.enclosed_area().filter(|_| self.complete)
+    }
+
+    fn mean_height(&self) -> Option<f64> {
+        self.basin.mean_height().filter(|_| self.complete)
+    }
 }
 
 impl CompareDocument {
     /// The document of some cases.
     pub fn new(search: ResolvedSearch, cases: &[Case], complete: bool) -> Self {
-        let first = cases.first().and_then(|c| c.basin.enclosed_area()).unwrap_or(0.0);
-        let first_mean = cases.first().and_then(|c| c.basin.mean_height()).unwrap_or(0.0);
+        let first = cases.first().and_then(Case::area).unwrap_or(0.0);
+        let first_mean = cases.first().and_then(Case::mean_height).unwrap_or(0.0);
         let first_capped = cases.first().is_some_and(|c| c.basin.capped());
         // The first case relative to itself is exactly 1, even if its height is a bound.
         let relative_is = |case: &Case| match cases.first() {
@@ -91,10 +105,11 @@ impl CompareDocument {
             scenario: case.scenario.clone(),
             speeds: speeds(case),
             upper: case.basin.columns.iter().map(|c| c.upper).collect(),
-            area: case.basin.enclosed_area(),
-            mean_height: case.basin.mean_height(),
-            relative_area: case.basin.enclosed_area().filter(|_| first > 0.0).map(|area| area / first),
-            relative_height: case.basin.mean_height().filter(|_| first_mean > 0.0).map(|m| m / first_mean),
+            complete: case.complete,
+            area: case.area(),
+            mean_height: case.mean_height(),
+            relative_area: case.area().filter(|_| first > 0.0).map(|area| area / first),
+            relative_height: case.mean_height().filter(|_| first_mean > 0.0).map(|m| m / first_mean),
             relative_is: relative_is(case),
             capped: case.basin.columns.iter().map(|c| c.capped).collect(),
             area_capped: case.basin.capped(),

@@ -6,7 +6,10 @@ use std::path::Path;
 pub fn warnings<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     names
         .filter(|name| Path::new(name).is_file())
-        .filter(|name| std::fs::read(name).is_ok_and(|bytes| bytes.last().is_some_and(|last| *last != b'\n')))
+        .filter(|name| {
+            crate::input_file::text(Path::new(name))
+                .is_ok_and(|text| !text.is_empty() && !text.ends_with('\n'))
+        })
         .map(|name| {
             format!("{name}: its last line has no end; if the file was cut, what is missing has its default")
         })

@@ -1,6 +1,7 @@
 //! Scenario files: TOML, or JSON, which can also be a result that contains its scenario.
 
 use super::{Scenario, ScenarioError};
+use crate::input_file;
 use crate::json;
 use std::path::Path;
 use toml::Value;
@@ -39,8 +40,8 @@ impl Scenario {
     /// States file, line or key, and what was expected.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let text = match path.to_str() {
-            Some("-") => std::io::read_to_string(std::io::stdin()),
-            _ => std::fs::read_to_string(path),
+            Some("-") => input_file::standard_input(),
+            _ => input_file::text(path),
         };
         let text = text.map_err(|source| ScenarioError::Read { path: path.into(), source })?;
         let text = text.trim_start_matches('\u{feff}');

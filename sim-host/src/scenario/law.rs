@@ -190,7 +190,7 @@ fn table(path: &str) -> Result<Law, LawChoiceError> {
     if !std::path::Path::new(path).exists() {
         return Err(LawChoiceError::Unknown(path.into()));
     }
-    let text = std::fs::read_to_string(path)
+    let text = crate::input_file::text(std::path::Path::new(path))
         .map_err(|e| LawChoiceError::Read { path: path.into(), reason: e.to_string() })?;
     let place = format!("law file {path}");
     of_table(toml::from_str(&text).map_err(|e| syntax(&place, e.to_string().trim()))?, &place)

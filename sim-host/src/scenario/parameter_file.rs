@@ -158,7 +158,7 @@ impl ParameterFile {
     /// States file and key, and what is allowed or damaged.
     pub fn read(path: &Path) -> Result<Self, ParameterFileError> {
         let path = path.display().to_string();
-        match std::fs::read_to_string(&path) {
+        match crate::input_file::text(Path::new(&path)) {
             Ok(text) => Self::of_text(&path, &text),
             Err(error) => Err(ParameterFileError::Read { path, reason: error.to_string() }),
         }

@@ -85,7 +85,7 @@ pub fn load(name: &str) -> Result<Study, StudyError> {
         return Err(StudyError::Unknown { name: name.into(), known });
     }
     let text =
-        std::fs::read_to_string(path).map_err(|error| StudyError::Read { name: name.into(), error })?;
+        crate::input_file::text(path).map_err(|error| StudyError::Read { name: name.into(), error })?;
     let stem = path.file_stem().map_or(name.into(), |s| s.to_string_lossy().into_owned());
     parse(&stem, &text).map(Study::Swept)
 }

@@ -1,6 +1,7 @@
 //! Reads a recording: a CSV file with a column of times and columns of rates. Faulty lines are listed and
 //! left out.
 
+use crate::recording::cut_line;
 use crate::recording::stamp::seconds;
 use csv::StringRecord;
 pub use physics::weave::record::{Axis, Record};
@@ -104,7 +105,10 @@ pub fn read(text: &str, columns: &Columns) -> Result<Record, RecordError> {
         }
     }
     let rows = rising(rows, &header[time], &mut notes);
-    let notes = notes.listed();
+    let mut notes = notes.listed();
+    if let Some(cut) = cut_line(text).filter(|cut| rows.last().map(|row| row.line) == cut.line) {
+        notes.push(cut.to_string());
+    }
     if rows.is_empty() {
         return Err(RecordError::NoLine { notes });
     }

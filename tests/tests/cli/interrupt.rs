@@ -56,6 +56,8 @@ fn an_interrupted_basin_preserves_completed_speeds() {
     assert_eq!(run.code, Some(130), "{run:?}");
     assert!(run.stderr.contains("of 60001 speeds are done and kept"), "{}", run.stderr);
     assert_eq!(bench.files(), ["out.csv", "out.json", "out.png", "out.svg"]);
+    assert!(run.stdout.contains(" of 60001 speeds: no area and no mean height"), "{}", run.stdout);
+    assert!(!run.stdout.contains("rad m/s^2"), "{}", run.stdout);
     let document: Value = serde_json::from_str(&bench.read("out.json")).unwrap();
     assert_eq!(document["complete"], false);
     assert!(document["area"].is_null() && document["mean_height"].is_null());
@@ -70,6 +72,32 @@ fn an_interrupted_basin_preserves_completed_speeds() {
         assert_eq!((capped.is_null(), outcome.as_array().unwrap().is_empty()), (missing, missing));
     }
     assert_eq!(bench.read("out.csv").matches(",border,").count(), done);
+}
+
+/// Situation: a long plane, and a comparison of two long basins; part of each is done.
+/// Action: Ctrl-C.
+/// Must hold: the text says how much is searched, and states no area, mean or extent of that part.
+#[test]
+fn an_interrupted_search_states_no_area() {
+    let bench = Bench::new(PROGRAM);
+    let plane = "basin plane --speed 4 --rays 10000";
+    let compare = "basin compare 'a=--time-limit 0.2' 'b=--time-limit 0.2' --speeds 0:30:0.0005 --scan-step 10 \
+                   --tolerance 5 --json out.json";
+    for (line, said) in [(plane, " of 10000 rays: no area"), (compare, "`a` is incomplete (")] {
+        let child = spawn(&bench, line);
+        wait_for_work(&child);
+        press_ctrl_c(&child);
+        let run = Run::from(child.wait_with_output().unwrap());
+        assert_eq!(run.code, Some(130), "{line}: {run:?}");
+        assert!(run.stdout.contains(said), "{line}: {}", run.stdout);
+        assert!(!run.stdout.contains("reaches"), "{line}: {}", run.stdout);
+    }
+    let document: Value = serde_json::from_str(&bench.read("out.json")).unwrap();
+    let case = &document["cases"][0];
+    assert_eq!(case["complete"], false);
+    for measure in ["area", "mean_height", "relative_area", "relative_height"] {
+        assert!(case[measure].is_null(), "{measure}: {}", case[measure]);
+    }
 }
 
 /// Situation: a long basin and a sweep of many short cells, some of each done.

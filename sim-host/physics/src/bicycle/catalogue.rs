@@ -64,7 +64,7 @@ fn from_file(name: &str, path: &Path, set: Option<&str>) -> Result<Bicycle, Bicy
 }
 
 fn read(path: &Path) -> Result<String, BicycleError> {
-    std::fs::read_to_string(path).map_err(|source| BicycleError::Read { path: path.into(), source })
+    crate::input_file::text(path).map_err(|source| BicycleError::Read { path: path.into(), source })
 }
 
 /// All of standard input, read once and shared by a sweep's cells.
@@ -74,7 +74,7 @@ fn standard_input() -> Result<String, BicycleError> {
     if let Some(text) = &*text {
         return Ok(text.clone());
     }
-    let all = std::io::read_to_string(std::io::stdin())
+    let all = crate::input_file::standard_input()
         .map_err(|source| BicycleError::Read { path: "standard input".into(), source })?;
     Ok(text.insert(all).clone())
 }

@@ -68,7 +68,7 @@ pub fn load(name: &str) -> Result<ActuatorConfig, ActuatorFileError> {
             return Err(ActuatorFileError::Unknown { name: name.into(), known });
         }
         _ => {
-            let text = std::fs::read_to_string(name)
+            let text = crate::input_file::text(Path::new(name))
                 .map_err(|e| ActuatorFileError::Read { name: name.into(), error: e.to_string() })?;
             toml::from_str(&text).map_err(|e| fail(e.to_string()))?
         }

@@ -196,7 +196,7 @@ impl SensorFile {
         if !Path::new(name).exists() {
             return Err(SensorFileError::Unknown(name.into()));
         }
-        let text = std::fs::read_to_string(name)
+        let text = crate::input_file::text(Path::new(name))
             .map_err(|e| SensorFileError::Read { name: name.into(), error: e.to_string() })?;
         Self::parse(&text).map_err(content)
     }

@@ -36,6 +36,6 @@ pub fn load(name: &str) -> Result<RiderTable, RiderError> {
         return Err(RiderError::Unknown { name: name.into(), known });
     }
     let text =
-        std::fs::read_to_string(path).map_err(|source| RiderError::Read { path: path.into(), source })?;
+        crate::input_file::text(path).map_err(|source| RiderError::Read { path: path.into(), source })?;
     RiderTable::from_text(name, &text, path)
 }
