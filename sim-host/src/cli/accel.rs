@@ -51,11 +51,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let output = Output::create(&args.csv)?;
     let file = args.states.display();
     let text = input_file::recorded_text(&args.states).map_err(|e| format!("can't read {file}: {e}"))?;
+    let answer =
+        accelerations(&Geometry::new(&bicycle.parameters), &text).map_err(|e| format!("{file}: {e}"))?;
     if let Some(remark) = cut_line(&text) {
         complain(&format!("warning: {file}: {remark}"));
     }
-    let answer =
-        accelerations(&Geometry::new(&bicycle.parameters), &text).map_err(|e| format!("{file}: {e}"))?;
     Ok(output.finish(answer.as_bytes())?)
 }
 

@@ -111,7 +111,7 @@ impl Scenario {
             let given = |key: &str, value: f64, most: f64| {
                 within(key, value, -most, most).map_err(|e| ScenarioError::value(&format!("start.{key}"), e))
             };
-            if start.speed_m_s.is_nan() {
+            if start.speed_m_s.is_nan() && !self.options.contains("start.speed_m_s") {
                 let reason = format!("must be given, from -{FASTEST_M_S} to {FASTEST_M_S} m/s");
                 return Err(ScenarioError::value("start.speed_m_s", reason));
             }
