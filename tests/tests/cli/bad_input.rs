@@ -49,6 +49,49 @@ fn wrong_parameter_files() {
     assert_rejected(&bench, "eigen --bicycle empty.toml", &["empty.toml", "`w` is missing"]);
 }
 
+/// Situation: devices without an end, and a pipe.
+/// Action: use them where a text file or a recording is expected.
+/// Must hold: each device is rejected with its name and nothing written; the pipe is read.
+#[test]
+fn devices_are_no_files() {
+    let bench = Bench::new(PROGRAM);
+    for line in [
+        "ride --speed 4 --law /dev/full",
+        "ride --speed 4 --scenario /dev/full",
+        "ride --speed 4 --bicycle /dev/full",
+        "ride --speed 4 --rider /dev/full",
+        "ride --speed 4 --actuator /dev/full",
+        "ride --speed 4 --sensor /dev/full",
+        "ride --speed 4 --parameters /dev/full",
+        "basin compare /dev/full",
+        "replay /dev/full",
+        "replay /dev/full --map /dev/full",
+        "identify /dev/full",
+    ] {
+        assert_rejected(&bench, line, &["/dev/full", "is a device, not a file"]);
+    }
+    let bicycle = word(&repository("data/bicycles/example.toml"));
+    let run = bench.shell(&format!("cat {bicycle} | $0 eigen --speeds 4 --bicycle /dev/stdin"));
+    assert_eq!(run.code, Some(0), "{run:?}");
+}
+
+/// Situation: a table of states whose last line has no end, and the same with it.
+/// Action: `bicycle accel`.
+/// Must hold: the same rows; a warning with file and line for the first only.
+#[test]
+fn a_cut_table_of_states_causes_a_warning() {
+    let bench = Bench::new(PROGRAM);
+    let text =
+        "roll,steer,roll_rate,steer_rate,rear_wheel_rate,roll_torque,steer_torque\n0.1,0,0,0,-10,0,0.25";
+    bench.write("cut.csv", text);
+    bench.write("whole.csv", format!("{text}\n"));
+    let [cut, whole] = ["cut", "whole"]
+        .map(|name| bench.run(&format!("bicycle accel --bicycle benchmark --states {name}.csv")));
+    assert_eq!((cut.code, whole.code, &cut.stdout), (Some(0), Some(0), &whole.stdout));
+    assert!(cut.stderr.contains("cut.csv: line 2: the last line has no end"), "{}", cut.stderr);
+    assert_eq!(whole.stderr, "");
+}
+
 /// Situation: a bicycle with inertias that no rigid body has.
 /// Action: check it, and ride it.
 /// Must hold: a warning with the reason and the values, in the document too; it still runs.

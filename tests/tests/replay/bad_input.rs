@@ -45,6 +45,20 @@ fn tables_that_can_not_be_used() {
     assert_rejected(table_of(HEADER, &good[..1]), &["gyro: 1 usable sample", "at least 2"]);
 }
 
+/// Situation: a table cut within the last number of its last line.
+/// Action: replay it, also with `--strict`; the same with the line's end.
+/// Must hold: a remark with the line, and the row is used; rejected under `--strict`. Accepted with the end.
+#[test]
+fn a_last_line_without_an_end() {
+    let whole = table_of(HEADER, &lines(&rows(400)));
+    let cut = whole.trim_end();
+    output(cut, &["line 401: the last line has no end"]);
+    let bench = Bench::new(PROGRAM);
+    bench.write("ride.csv", format!("{cut}\n"));
+    let document = bench.json("replay ride.csv --map extract --strict");
+    assert!(remarks(&document).is_empty(), "{}", document["remarks"]);
+}
+
 /// Situation: columns that change in the middle: the accelerometer is no longer written.
 /// Action: replay.
 /// Must hold: reported with the line; the rows before and after are used, the accelerometer is lost from there on.
