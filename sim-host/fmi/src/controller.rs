@@ -202,7 +202,7 @@ impl Controller {
         to.iter_mut().zip(numbers.into_iter().chain(present)).for_each(|(to, value)| *to = value);
     }
 
-    /// The state, of the same size at any time.
+    /// The state; its size does not grow with the time.
     pub(crate) fn bytes(&self) -> Vec<u8> {
         self.running.as_ref().map_or_else(Vec::new, |(_, now)| {
             let Engaged { state, ticks, command } = now.clone();

@@ -2,7 +2,7 @@
 
 use super::options::{Fall, Options};
 use super::outputs::{Further, OutputArgs, Results, complain};
-use super::progress::tell_wait;
+use super::progress::print_wait;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Axis, Method, Search};
@@ -155,7 +155,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         let columns = (scenarios.training.len() + scenarios.held_out.len()) * laws.len() * fine.speeds.len();
         let bar = progress(outputs.shows_progress(), "judge", columns as u64);
         let advanced = || bar.inc(1);
-        let waits = |wait: &sweep::Wait| tell_wait(outputs.shows_progress(), &bar, wait);
+        let waits = |wait: &sweep::Wait| print_wait(outputs.shows_progress(), &bar, wait);
         let steps = sweep::Progress { advanced: &advanced, waits: &waits, stop: &interrupt::stopped };
         evaluation = pool.install(|| match &args.results {
             Some(folder) => evaluate_in(folder, &scenarios, &laws, &fine, &steps),

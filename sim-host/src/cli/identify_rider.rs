@@ -6,7 +6,7 @@ use super::identify_rider_results::{Finished, Store};
 use super::inputs::once;
 use super::interrupt;
 use super::outputs::{Further, Outputs, Results, complain};
-use super::progress::{progress, tell_wait};
+use super::progress::{print_wait, progress};
 use super::{Ended, Failure, warn};
 use crate::bicycle::catalogue::Bicycle;
 use crate::commands::identify::{FoundRider, IdentifyChoice, ready};
@@ -72,7 +72,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
             open = std::mem::take(&mut elsewhere);
             if let Some(store) = store.as_ref().filter(|_| reminder.is_due()) {
                 let wait = store.wait(open.iter().map(|i| args.files[*i].as_path()));
-                tell_wait(outputs.shows_progress(), &bar, &wait);
+                print_wait(outputs.shows_progress(), &bar, &wait);
             }
             std::thread::sleep(LOOK);
             continue;

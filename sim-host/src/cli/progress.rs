@@ -16,8 +16,8 @@ pub(super) fn progress(shown: bool, command: &str, count: usize, what: &str) -> 
     ProgressBar::new(count as u64).with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
 }
 
-/// Tells on standard error, above the bar, for which other processes this one waits; not if nothing is to be shown.
-pub(super) fn tell_wait(shown: bool, bar: &ProgressBar, wait: &Wait) {
+/// Prints on standard error, above the bar, for which other processes this one waits; nothing unless `shown`.
+pub(super) fn print_wait(shown: bool, bar: &ProgressBar, wait: &Wait) {
     if shown {
         bar.suspend(|| complain(&wait.to_string()));
     }

@@ -2,7 +2,7 @@
 
 use super::options::{Cells, Options, Search, usage_error};
 use super::outputs::complain;
-use super::progress::{progress, tell_wait};
+use super::progress::{print_wait, progress};
 use super::study_args::{Args, made, page_path, print_path};
 use super::sweep::{finish, resolved as sweep_of, to_do};
 use super::{Ended, Failure, interrupt};
@@ -45,7 +45,7 @@ pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
         let cells = to_do(sweep, &mine, folder);
         afresh &= cells.len() == mine.len();
         let bar = progress(!args.quiet, &study.name, cells.len() * sweep.search.speeds.len(), "columns");
-        let waits = |wait: &Wait| tell_wait(!args.quiet, &bar, wait);
+        let waits = |wait: &Wait| print_wait(!args.quiet, &bar, wait);
         let steps = Progress { advanced: &|| bar.inc(1), waits: &waits, stop: &interrupt::stopped };
         let done = pool.install(|| sweep::run(&cells, &sweep.search, folder, &steps));
         bar.finish_and_clear();

@@ -2,7 +2,7 @@
 
 use super::options::{Cells, Options, ScenarioFile, Search};
 use super::outputs::{complain, complain_once, print, write_json};
-use super::progress::{progress, tell_wait};
+use super::progress::{print_wait, progress};
 use super::scenario_error::failure;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, UsageError, interrupt, sweep_status};
@@ -121,7 +121,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let folder = Folder::open(&args.out, &resolved.plan)?;
     let to_do = to_do(&resolved, &mine, &folder);
     let bar = progress(!args.output.quiet, "sweep", to_do.len() * resolved.search.speeds.len(), "columns");
-    let waits = |wait: &Wait| tell_wait(!args.output.quiet, &bar, wait);
+    let waits = |wait: &Wait| print_wait(!args.output.quiet, &bar, wait);
     let steps = Progress { advanced: &|| bar.inc(1), waits: &waits, stop: &interrupt::stopped };
     let done = pool.install(|| sweep::run(&to_do, &resolved.search, &folder, &steps));
     bar.finish_and_clear();
