@@ -50,7 +50,7 @@ impl Capsize {
 
     /// The gain of the roll angle \[N m/rad\], never negative. It never falls with speed, so of uncertain speeds the
     /// lowest gives the smallest gain.
-    pub fn gain<R: Real>(&self, speed_m_s: R) -> R {
+    pub fn gain<R: Real + PartialOrd>(&self, speed_m_s: R) -> R {
         let above = speed_m_s - R::lit(f64::from(self.v_max_m_s));
         if above > R::lit(0.0) { R::lit(f64::from(self.k_c)) * above } else { R::lit(0.0) }
     }

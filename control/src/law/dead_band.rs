@@ -31,7 +31,7 @@ impl DeadBand {
     /// The part of a roll rate outside the band, with the sign of the roll rate \[rad/s\]; the same bits if the band is
     /// off.
     #[inline]
-    pub fn excess<R: Real>(&self, roll_rate_rad_s: R) -> R {
+    pub fn excess<R: Real + PartialOrd>(&self, roll_rate_rad_s: R) -> R {
         if !self.is_on() {
             return roll_rate_rad_s;
         }

@@ -58,7 +58,7 @@ impl GainSchedule {
     }
 
     /// The gain at a forward speed \[m/s\]; 0 without points.
-    pub fn gain<R: Real>(&self, speed_m_s: R) -> R {
+    pub fn gain<R: Real + PartialOrd>(&self, speed_m_s: R) -> R {
         let mut previous: Option<(R, R)> = None;
         for &(v, k) in &self.points {
             let (v, k) = (R::lit(f64::from(v)), R::lit(f64::from(k)));

@@ -117,7 +117,7 @@ impl Law {
     /// Finite for every speed within +-30 m/s, the range of the wheel speeds that [`crate::sensors::validation`]
     /// accepts.
     #[inline]
-    pub fn gain<R: Real>(&self, speed_m_s: R) -> R {
+    pub fn gain<R: Real + PartialOrd>(&self, speed_m_s: R) -> R {
         let v = speed_m_s;
         let zero = R::lit(0.0);
         match self {
@@ -129,7 +129,7 @@ impl Law {
                     h(v)
                 }
             }
-            Law::F => R::lit(0.88) * v * v - R::lit(12.0) * v + R::lit(41.0),
+            Law::F => f(v),
             Law::G => g(v),
             Law::Cl1 if v < R::lit(6.7) => R::lit(5.97) * (R::lit(6.7) - v),
             Law::Cl2 { k } if v < R::lit(10.0) => R::lit(f64::from(*k)) * (R::lit(10.0) - v),
@@ -143,6 +143,18 @@ impl Law {
             }
             Law::Cl1 | Law::Cl2 { .. } | Law::BalanceAssist { .. } => zero,
             Law::Table(table) => table.gain(v),
+        }
+    }
+
+    /// The gain of a law that is one formula at every speed, as [`Law::gain`]; `None` for the others.
+    #[inline(always)]
+    pub fn formula<R: Real>(&self, speed_m_s: R) -> Option<R> {
+        match self {
+            Law::None => Some(R::lit(0.0)),
+            Law::H { cut: false } => Some(h(speed_m_s)),
+            Law::F => Some(f(speed_m_s)),
+            Law::G => Some(g(speed_m_s)),
+            _ => None,
         }
     }
 
@@ -282,13 +294,19 @@ impl FromStr for Law {
 }
 
 /// Gain of [`Law::H`] without the cut.
-#[inline]
+#[inline(always)]
 fn h<R: Real>(v: R) -> R {
     (R::lit(30.0) - R::lit(4.0) * v) * (R::lit(-0.03) * v * v).exp()
 }
 
+/// Gain of [`Law::F`].
+#[inline(always)]
+fn f<R: Real>(v: R) -> R {
+    R::lit(0.88) * v * v - R::lit(12.0) * v + R::lit(41.0)
+}
+
 /// Gain of [`Law::G`].
-#[inline]
+#[inline(always)]
 fn g<R: Real>(v: R) -> R {
     (R::lit(40.0) - v) * (R::lit(-0.35) * v).exp()
 }

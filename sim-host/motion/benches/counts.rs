@@ -5,7 +5,7 @@ mod work;
 use control::{Config, Law};
 use motion::ride::{rides, traced};
 use std::hint::black_box;
-use work::{Controller, bicycle, conditions, right_hand_sides, small_basin, starts, states};
+use work::{Controller, WIDTH, bicycle, conditions, right_hand_sides, small_basin, starts, states};
 
 fn main() {
     // Cargo adds `--bench`.
@@ -21,9 +21,9 @@ fn run(name: &str) -> usize {
     match name {
         "right-hand-side" => {
             let b = bicycle();
-            let states = states(&b, 100);
+            let states = states(&b, 100 * WIDTH);
             counted(&mut || right_hand_sides(&b, &states));
-            states.len()
+            states.len() / WIDTH
         }
         "ride-step" => {
             let (conditions, starts) = (conditions(), starts());

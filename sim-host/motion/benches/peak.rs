@@ -18,7 +18,7 @@ fn main() {
     let operations = 2.0 * f64::from(LENGTH) * CHAINS as f64;
     // In turn, so that a change of the clock rate acts on all of them.
     let b = work::bicycle();
-    let states = work::states(&b, 1000);
+    let states = work::states(&b, 8000);
     let conditions = work::conditions();
     let (mut sums, mut fused, mut sides, mut basins) = (f64::MAX, f64::MAX, f64::MAX, f64::MAX);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread();
@@ -32,7 +32,7 @@ fn main() {
     }
     println!("name=products_and_sums operations_per_s={}", operations / sums);
     println!("name=fused operations_per_s={}", operations / fused);
-    println!("name=right_hand_side right_hand_sides_per_s={}", (states.len() * work::WIDTH) as f64 / sides);
+    println!("name=right_hand_side right_hand_sides_per_s={}", states.len() as f64 / sides);
     println!("name=basin right_hand_sides_per_s={}", found.right_hand_sides as f64 / basins);
 }
 

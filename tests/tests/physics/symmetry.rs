@@ -3,9 +3,7 @@
 use proptest::prop_assert_eq;
 use sim_host::bicycle::linear::Linear;
 use sim_host::bicycle::{Geometry, Motion, State, Torques};
-use sim_host::integrate::rk4;
-use sim_host::num::Lanes;
-use std::array::from_fn;
+use sim_host::ride::accelerations;
 use tests::draws::{runner, situations, situations_of};
 use tests::rides::{FREE, all_shipped, knocked, ride, shipped};
 
@@ -103,45 +101,23 @@ fn a_ride_knocked_to_the_left_mirrors_one_to_the_right_to_the_bit() {
     }
 }
 
-/// Eight states side by side and one after the other: accelerations and a whole step.
+/// Many states side by side and one after the other: accelerations.
 #[test]
-fn eight_lanes_have_the_bits_of_eight_scalars() {
+fn lanes_have_the_bits_of_scalars() {
     let bicycle = shipped("rigid_jason");
     let b = Geometry::new(&bicycle.parameters);
     runner(200)
-        .run(&proptest::array::uniform8(situations_of(bicycle, 60_f64.to_radians())), |draws| {
-            let lane = |of: fn(&State<f64>) -> f64| Lanes::<8>(from_fn(|i| of(&draws[i].state)));
-            let state = State {
-                roll: lane(|s| s.roll),
-                steer: lane(|s| s.steer),
-                roll_rate: lane(|s| s.roll_rate),
-                steer_rate: lane(|s| s.steer_rate),
-                rear_wheel_rate: lane(|s| s.rear_wheel_rate),
-                pitch: lane(|s| s.pitch),
-            };
-            let mut torques = Torques {
-                roll: Lanes(from_fn(|i| draws[i].torques.roll)),
-                steer: Lanes(from_fn(|i| draws[i].torques.steer)),
-            };
-            let together = Motion::new(&b, &state).accelerations(&b, &torques);
-            let after = rk4(&b, &state, 1e-3, &mut torques);
-            for (i, d) in draws.iter().enumerate() {
-                let alone = Motion::new(&b, &d.state).accelerations(&b, &d.torques);
-                let lane = [together.roll.0[i], together.steer.0[i], together.rear_wheel.0[i]];
+        .run(&proptest::array::uniform32(situations_of(bicycle, 60_f64.to_radians())), |draws| {
+            let torques = draws[0].torques;
+            let states = draws.map(|draw| draw.state);
+            let together = accelerations(&b, &states, &torques);
+            prop_assert_eq!(together.len(), states.len());
+            for (state, together) in states.iter().zip(together) {
+                let alone = Motion::new(&b, state).accelerations(&b, &torques);
                 prop_assert_eq!(
-                    lane.map(f64::to_bits),
+                    [together.roll, together.steer, together.rear_wheel].map(f64::to_bits),
                     [alone.roll, alone.steer, alone.rear_wheel].map(f64::to_bits)
                 );
-                let lane = [
-                    after.roll,
-                    after.steer,
-                    after.roll_rate,
-                    after.steer_rate,
-                    after.rear_wheel_rate,
-                    after.pitch,
-                ];
-                let alone = entries(&rk4(&b, &d.state, 1e-3, &mut { d.torques }));
-                prop_assert_eq!(lane.map(|x| x.0[i].to_bits()), alone.map(f64::to_bits));
             }
             Ok(())
         })

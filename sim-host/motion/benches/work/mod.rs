@@ -1,16 +1,14 @@
 //! The work that is counted and timed.
 #![allow(dead_code)]
-#![allow(unsafe_code)]
 
 use control::{Config, Law, Plan, SensorFrame, step};
-use motion::bicycle::{Geometry, Motion, State, Torques, pitch_from_upright};
-use motion::num::Lanes;
-use motion::ride::{Assist, Conditions, Start, frames, traced};
+use motion::bicycle::{Geometry, State, Torques, pitch_from_upright};
+use motion::ride::{Assist, Conditions, Start, accelerations, frames, traced};
 use physics::basin::{Axis, Basin, Method, Search, basin};
 use physics::bicycle::catalogue;
 use std::hint::black_box;
 
-/// Rides in the lanes.
+/// Rides that are counted together.
 pub(crate) const WIDTH: usize = 8;
 
 /// The bicycle of the thesis.
@@ -29,12 +27,8 @@ pub(crate) fn starts() -> [Start; WIDTH] {
     std::array::from_fn(|lane| Axis::SteerRate.start(5.0, (lane + 1) as f64))
 }
 
-/// A state that begins a cache line, as in the rides no vector then lies in two.
-#[repr(align(64))]
-pub(crate) struct Aligned(State<Lanes<WIDTH>>);
-
-/// States all over a ride, in eight lanes.
-pub(crate) fn states(b: &Geometry, count: usize) -> Vec<Aligned> {
+/// States all over a ride.
+pub(crate) fn states(b: &Geometry, count: usize) -> Vec<State<f64>> {
     let one = |i: usize| {
         let t = i as f64 * 1e-2;
         let (roll, steer) = (0.5 * libm::sin(1.7 * t), 0.7 * libm::sin(2.3 * t));
@@ -47,36 +41,12 @@ pub(crate) fn states(b: &Geometry, count: usize) -> Vec<Aligned> {
             pitch: pitch_from_upright(b, roll, steer).expect("both wheels reach the ground"),
         }
     };
-    let eight = |i: usize| {
-        let mut state = State::upright(b, Lanes([0.0; WIDTH]));
-        (0..WIDTH).for_each(|lane| state.set_lane(lane, &one(WIDTH * i + lane)));
-        Aligned(state)
-    };
-    (0..count).map(eight).collect()
+    (0..count).map(one).collect()
 }
 
-/// The right-hand side at each state, in the instructions of the rides.
-pub(crate) fn right_hand_sides(b: &Geometry, states: &[Aligned]) {
-    #[cfg(target_arch = "x86_64")]
-    if std::is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine was just checked to have AVX2.
-        return unsafe { right_hand_sides_avx2(b, states) };
-    }
-    each_right_hand_side(b, states);
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn right_hand_sides_avx2(b: &Geometry, states: &[Aligned]) {
-    each_right_hand_side(b, states);
-}
-
-#[inline(always)]
-fn each_right_hand_side(b: &Geometry, states: &[Aligned]) {
-    let torques = Torques { roll: Lanes([0.0; WIDTH]), steer: Lanes([1.0; WIDTH]) };
-    for state in states {
-        black_box(Motion::new(b, &black_box(state).0).accelerations(b, &torques));
-    }
+/// The right-hand side at each state, as many side by side as in the rides.
+pub(crate) fn right_hand_sides(b: &Geometry, states: &[State<f64>]) {
+    black_box(accelerations(b, black_box(states), &Torques { roll: 0.0, steer: 1.0 }));
 }
 
 /// A small basin by the fast search: seven speeds, coarse.

@@ -63,7 +63,7 @@ impl<S: Scalar> State<S> {
 
 impl<const N: usize> State<Lanes<N>> {
     /// The state of one lane.
-    pub fn lane(&self, lane: usize) -> State<f64> {
+    pub(crate) fn lane(&self, lane: usize) -> State<f64> {
         State {
             roll: self.roll.0[lane],
             steer: self.steer.0[lane],
@@ -75,7 +75,7 @@ impl<const N: usize> State<Lanes<N>> {
     }
 
     /// Sets the state of one lane.
-    pub fn set_lane(&mut self, lane: usize, to: &State<f64>) {
+    pub(crate) fn set_lane(&mut self, lane: usize, to: &State<f64>) {
         self.roll.0[lane] = to.roll;
         self.steer.0[lane] = to.steer;
         self.roll_rate.0[lane] = to.roll_rate;

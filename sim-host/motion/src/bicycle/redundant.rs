@@ -84,62 +84,71 @@ impl FullState {
                 front.power::<false, false, false>(b, &pose, f),
             ]
         };
-        let (mut a, mut r) = ([[0.0; 9]; 9], [0.0; 9]);
+        let mut equations: Equations = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
         for (j, (unit, momenta)) in unit.iter().zip(&momenta).enumerate() {
             for (i, power) in powers(momenta).into_iter().enumerate().take(j + 1) {
-                a[i][j] = power;
-                a[j][i] = power;
+                equations[i][j] = power;
+                equations[j][i] = power;
             }
             let contact = contact_velocity(b, &pose, unit);
             for (i, c) in [contact.x, contact.y, contact.z].into_iter().enumerate() {
-                a[6 + i][j] = c;
-                a[j][6 + i] = c;
+                equations[6 + i][j] = c;
+                equations[j][6 + i] = c;
             }
         }
-        for (j, power) in powers(&bias).into_iter().enumerate() {
-            r[j] = -power;
+        let [mut p0, p1, p2, mut p3, p4, p5] = powers(&bias).map(|power| -power);
+        p0 += torques.roll;
+        p3 += torques.steer;
+        let known = [p0, p1, p2, p3, p4, p5, -free.x, -free.y, -free.z];
+        for (row, known) in equations.iter_mut().zip(known) {
+            row[UNKNOWNS] = known;
         }
-        r[0] += torques.roll;
-        r[3] += torques.steer;
-        (r[6], r[7], r[8]) = (-free.x, -free.y, -free.z);
-        let solution = solve(a, r)?;
+        let solution = solve(equations)?;
         let speeds = std::array::from_fn(|i| solution[i]);
         Some(FullState { angles: [actual.roll, actual.pitch, actual.steer], speeds })
     }
 }
 
-/// Solves `a x = r` by elimination with the largest pivot of each column; `None` if a pivot is zero.
-fn solve<const N: usize>(mut a: [[f64; N]; N], mut r: [f64; N]) -> Option<[f64; N]> {
-    for i in 0..N {
+/// The derivatives of six speeds, and three constraint forces.
+const UNKNOWNS: usize = 9;
+
+/// Linear equations: in each row the coefficients, then the known side.
+type Equations = [[f64; UNKNOWNS + 1]; UNKNOWNS];
+
+/// Solves the equations by elimination with the largest pivot of each column; `None` if a pivot is zero.
+///
+/// Whole rows are combined, although the entries left of the pivot are not used again: loops of one length become vector
+/// instructions.
+fn solve(mut rows: Equations) -> Option<[f64; UNKNOWNS]> {
+    for i in 0..UNKNOWNS {
         let mut largest = i;
-        for row in i + 1..N {
-            if a[row][i].abs() > a[largest][i].abs() {
+        for row in i + 1..UNKNOWNS {
+            if rows[row][i].abs() > rows[largest][i].abs() {
                 largest = row;
             }
         }
-        a.swap(i, largest);
-        r.swap(i, largest);
-        if a[i][i] == 0.0 {
+        rows.swap(i, largest);
+        let pivot = rows[i];
+        if pivot[i] == 0.0 {
             return None;
         }
-        let (above, below) = a.split_at_mut(i + 1);
-        let (pivot, per_pivot, known) = (&above[i], 1.0 / above[i][i], r[i]);
-        for (row, r) in below.iter_mut().zip(&mut r[i + 1..]) {
+        let per_pivot = 1.0 / pivot[i];
+        for row in &mut rows[i + 1..] {
             let part = row[i] * per_pivot;
-            for j in i + 1..N {
-                row[j] -= part * pivot[j];
+            for (x, pivot) in row.iter_mut().zip(pivot) {
+                *x -= part * pivot;
             }
-            *r -= part * known;
         }
     }
-    for i in (0..N).rev() {
-        r[i] /= a[i][i];
-        let known = r[i];
-        for (row, r) in a.iter().zip(&mut r[..i]) {
-            *r -= row[i] * known;
+    let mut solution = rows.map(|row| row[UNKNOWNS]);
+    for i in (0..UNKNOWNS).rev() {
+        solution[i] /= rows[i][i];
+        let known = solution[i];
+        for (row, x) in rows.iter().zip(&mut solution[..i]) {
+            *x -= row[i] * known;
         }
     }
-    Some(r)
+    Some(solution)
 }
 
 fn velocities(

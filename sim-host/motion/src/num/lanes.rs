@@ -1,18 +1,37 @@
-//! Several numbers side by side; the compiler vectorises the loops.
+//! Several numbers side by side, in the vector registers of the instruction set that has as many lanes.
+//!
+//! | lanes | registers of a number | instructions |
+//! | ---: | --- | --- |
+//! | 16 | 2 of 8 | AVX-512 |
+//! | 8 | 2 of 4 | AVX2 |
+//! | any other | as the compiler finds | of every processor of the target |
+//!
+//! Lanes of the first two rows are used only in [`crate::ride`]'s functions for these instructions, which are called where the
+//! processor has them.
 
 use super::Scalar;
+use super::exp::exp;
+#[cfg(target_arch = "x86_64")]
+use super::registers::{Avx2, Avx512, Registers};
 use super::sincos::{by_quadrant, reduced};
+use control::law::real::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `N` independent numbers. Operations act on each lane alone, so each lane has the same bits as an `f64`
 /// after the same operations.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lanes<const N: usize>(pub [f64; N]);
+pub(crate) struct Lanes<const N: usize>(pub(crate) [f64; N]);
+
+/// A variable that begins a cache line. With one in a function, the compiler also aligns the registers that it stores: an
+/// instruction takes longer if its numbers lie in two lines.
+#[repr(align(64))]
+#[derive(Clone, Copy)]
+pub(crate) struct Aligned<T>(pub(crate) T);
 
 impl<const N: usize> Lanes<N> {
     /// Applies a function to every lane.
     #[inline(always)]
-    pub fn map(self, op: impl Fn(f64) -> f64) -> Self {
+    pub(crate) fn map(self, op: impl Fn(f64) -> f64) -> Self {
         let mut out = self;
         for i in 0..N {
             out.0[i] = op(self.0[i]);
@@ -21,12 +40,25 @@ impl<const N: usize> Lanes<N> {
     }
 }
 
+/// Returns the result in registers if there are such of `N` lanes.
+macro_rules! in_registers {
+    ($operation:ident, $($operand:expr),+) => {
+        #[cfg(target_arch = "x86_64")]
+        match N {
+            16 => return Self(Avx512::$operation($(Avx512::load($operand.0)),+).numbers()),
+            8 => return Self(Avx2::$operation($(Avx2::load($operand.0)),+).numbers()),
+            _ => (),
+        }
+    };
+}
+
 macro_rules! binary {
     ($trait:ident, $method:ident, $op:tt) => {
         impl<const N: usize> $trait for Lanes<N> {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
+                in_registers!($method, self, other);
                 let mut out = self;
                 for i in 0..N {
                     out.0[i] = self.0[i] $op other.0[i];
@@ -45,7 +77,7 @@ impl<const N: usize> Add<f64> for Lanes<N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: f64) -> Self {
-        self + Self([other; N])
+        self + Self::constant(other)
     }
 }
 
@@ -53,7 +85,7 @@ impl<const N: usize> Mul<f64> for Lanes<N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: f64) -> Self {
-        self * Self([other; N])
+        self * Self::constant(other)
     }
 }
 
@@ -61,33 +93,59 @@ impl<const N: usize> Neg for Lanes<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        let mut out = self;
-        for i in 0..N {
-            out.0[i] = -self.0[i];
-        }
-        out
+        in_registers!(neg, self);
+        self.map(|x| -x)
     }
 }
 
 impl<const N: usize> Scalar for Lanes<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        match N {
+            16 => return Self(Avx512::constant(value).numbers()),
+            8 => return Self(Avx2::constant(value).numbers()),
+            _ => (),
+        }
         Self([value; N])
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        let mut out = self;
-        for i in 0..N {
-            out.0[i] = self.0[i].sqrt();
-        }
-        out
+        in_registers!(sqrt, self);
+        self.map(f64::sqrt)
     }
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (mut s, mut c, quadrant) = reduced(self);
+        #[cfg(target_arch = "x86_64")]
+        match N {
+            16 => {
+                let (s, c) = (Avx512::load(s.0), Avx512::load(c.0));
+                let (s, c) = Avx512::by_quadrant(s, c, Avx512::load(quadrant.0));
+                return (Self(s.numbers()), Self(c.numbers()));
+            }
+            8 => {
+                let (s, c) = (Avx2::load(s.0), Avx2::load(c.0));
+                let (s, c) = Avx2::by_quadrant(s, c, Avx2::load(quadrant.0));
+                return (Self(s.numbers()), Self(c.numbers()));
+            }
+            _ => (),
+        }
         for i in 0..N {
             (s.0[i], c.0[i]) = by_quadrant(s.0[i], c.0[i], quadrant.0[i].to_bits());
         }
         (s, c)
+    }
+}
+
+/// For the laws of quick rides.
+impl<const N: usize> Real for Lanes<N> {
+    #[inline(always)]
+    fn lit(value: f64) -> Self {
+        Self::constant(value)
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        exp(self)
     }
 }

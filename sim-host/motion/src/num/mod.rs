@@ -5,14 +5,16 @@
 //! multiply-add, so a ride has the same bits alone, in a batch, and on every x86-64.
 
 mod dual;
+mod exp;
 mod lanes;
 mod moves;
 mod random_stream;
+mod registers;
 mod sincos;
 mod vector;
 
 pub use dual::Dual;
-pub use lanes::Lanes;
+pub(crate) use lanes::{Aligned, Lanes};
 pub use moves::Moves;
 pub use random_stream::RandomStream;
 pub use sincos::sin_cos;

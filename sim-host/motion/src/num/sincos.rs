@@ -41,6 +41,12 @@ pub(super) fn by_quadrant(s: f64, c: f64, quadrant: u64) -> (f64, f64) {
     (f64::from_bits(sin ^ sin_sign), f64::from_bits(cos ^ cos_sign))
 }
 
+/// A polynomial of five degrees, lowest coefficient first.
+#[inline(always)]
+fn series<S: Scalar>(z: S, c: &[f64; 6]) -> S {
+    z * (z * (z * (z * (z * c[5] + c[4]) + c[3]) + c[2]) + c[1]) + c[0]
+}
+
 /// The fdlibm polynomials for [-pi/4, pi/4].
 #[inline(always)]
 #[allow(clippy::excessive_precision)]
@@ -62,10 +68,9 @@ fn kernel<S: Scalar>(r: S) -> (S, S) {
         -1.135_964_755_778_819_482_65e-11,
     ];
     let z = r * r;
-    let series = |c: &[f64; 6]| z * (z * (z * (z * (z * c[5] + c[4]) + c[3]) + c[2]) + c[1]) + c[0];
     let half = z * 0.5;
     let w = -half + 1.0;
-    (r + r * z * series(&SIN), w + ((-w + 1.0) - half + z * z * series(&COS)))
+    (r + r * z * series(z, &SIN), w + ((-w + 1.0) - half + z * z * series(z, &COS)))
 }
 
 #[cfg(test)]

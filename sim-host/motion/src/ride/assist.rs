@@ -2,6 +2,7 @@
 
 use crate::bicycle::{Geometry, Velocities};
 use crate::num::Scalar;
+use control::law::real::Real;
 use control::{DeadBand, Law, Plan};
 use std::fmt;
 use std::sync::Arc;
@@ -33,6 +34,12 @@ impl IdealLaw {
     #[inline(always)]
     pub(super) fn torque_nm(&self, roll_rate_rad_s: f64, speed_m_s: f64) -> f64 {
         self.law.gain(speed_m_s) * self.dead_band.excess(roll_rate_rad_s)
+    }
+
+    /// The same of several rides side by side, if the law is one formula at every speed and has no dead band.
+    #[inline(always)]
+    pub(super) fn formula<R: Real>(&self, roll_rate_rad_s: R, speed_m_s: R) -> Option<R> {
+        if self.dead_band.is_on() { None } else { Some(self.law.formula(speed_m_s)? * roll_rate_rad_s) }
     }
 }
 

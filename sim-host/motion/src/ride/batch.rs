@@ -1,46 +1,25 @@
-//! Simulates many rides on one core with the widest available vector instructions.
-#![allow(unsafe_code)]
+//! Simulates many rides on one core with the widest available vector instructions, or one.
 
 use super::backend::Backend;
-use super::lanes::{WIDTH, run};
-use super::quick::{self, Quick, QuickRide};
+use super::instructions::Instructions;
 use super::{Conditions, Remote, RemoteError, Ride, Start, TracePoint};
+use crate::bicycle::{Accelerations, Geometry, State, Torques};
+
+/// Number of rides that [`rides`] simulates side by side: 16 on a processor with AVX-512, 8 with AVX2, 4 on aarch64, otherwise 1.
+pub fn side_by_side() -> usize {
+    Instructions::of_this_processor().lanes()
+}
 
 /// Simulates every ride to its end; results in the order of `starts`.
 ///
-/// Eight in parallel if the machine has AVX2 (without fused multiply-add), otherwise one after the other. The
-/// bits are the same.
+/// As many in parallel as [`side_by_side`] states, without fused multiply-add. The bits are the same.
 pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    #[cfg(target_arch = "x86_64")]
-    if std::is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine was just checked to have AVX2.
-        return unsafe { rides_avx2(conditions, starts) };
-    }
-    run::<1>(conditions, starts, None, &mut Backend::Local)
+    Instructions::of_this_processor().rides(conditions, starts)
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn rides_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    run::<WIDTH>(conditions, starts, None, &mut Backend::Local)
-}
-
-impl Quick<'_> {
-    /// Simulates every ride; results in the order of `starts`.
-    pub fn rides(&self, starts: &[Start]) -> Vec<QuickRide> {
-        #[cfg(target_arch = "x86_64")]
-        if std::is_x86_feature_detected!("avx2") {
-            // SAFETY: the machine was just checked to have AVX2.
-            return unsafe { quick_rides_avx2(self, starts) };
-        }
-        quick::run::<1>(self, starts)
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn quick_rides_avx2(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
-    quick::run::<WIDTH>(quick, starts)
+/// The accelerations at every state under the same torques, as many side by side as rides.
+pub fn accelerations(b: &Geometry, states: &[State<f64>], torques: &Torques<f64>) -> Vec<Accelerations<f64>> {
+    Instructions::of_this_processor().accelerations(b, states, torques)
 }
 
 /// Simulates one ride and records every control period; the bits are the same as in a batch.
@@ -67,24 +46,7 @@ fn alone(
     trace: &mut Vec<TracePoint>,
     backend: &mut Backend<'_>,
 ) -> Vec<Ride> {
-    #[cfg(target_arch = "x86_64")]
-    if std::is_x86_feature_detected!("avx2") {
-        // SAFETY: the machine was just checked to have AVX2.
-        return unsafe { alone_avx2(conditions, start, trace, backend) };
-    }
-    run::<1>(conditions, &[start], Some(trace), backend)
-}
-
-/// One ride in instructions with three operands, which need no copies of registers.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn alone_avx2(
-    conditions: &Conditions,
-    start: Start,
-    trace: &mut Vec<TracePoint>,
-    backend: &mut Backend<'_>,
-) -> Vec<Ride> {
-    run::<1>(conditions, &[start], Some(trace), backend)
+    Instructions::of_this_processor().in_turn(conditions, &[start], Some(trace), backend)
 }
 
 /// As [`rides`], one after the other, with the control step on an external processor.
@@ -97,7 +59,7 @@ pub fn rides_on(
     remote: &mut dyn Remote,
 ) -> Result<Vec<Ride>, RemoteError> {
     let mut backend = Backend::remote(remote);
-    let done = run::<1>(conditions, starts, None, &mut backend);
+    let done = Instructions::of_this_processor().in_turn(conditions, starts, None, &mut backend);
     backend.end().map(|()| done)
 }
 
@@ -112,6 +74,6 @@ pub fn traced_on(
 ) -> Result<(Ride, Vec<TracePoint>), RemoteError> {
     let mut trace = Vec::with_capacity(conditions.steps() as usize);
     let mut backend = Backend::remote(remote);
-    let mut done = run::<1>(conditions, &[start], Some(&mut trace), &mut backend);
+    let mut done = alone(conditions, start, &mut trace, &mut backend);
     backend.end().map(|()| (done.remove(0), trace))
 }

@@ -11,12 +11,9 @@ use super::warm_start::WarmStart;
 use super::{Assist, Conditions, Ride, Start, TracePoint};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::integrate::{Actuation, STAGES, rk4};
-use crate::num::Lanes;
+use crate::num::{Aligned, Lanes};
 use crate::plant::{Frame, Plant};
 use crate::rider::Instant;
-
-/// Number of parallel rides: two AVX2 registers per number, which hides the latencies.
-pub(super) const WIDTH: usize = 8;
 
 /// The rides in the lanes, as the source of their torques.
 struct LaneBatch<'a, 'p, const N: usize> {
@@ -118,7 +115,9 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
 impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
     #[inline(always)]
     fn begin_step(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
-        self.control(b, motion);
+        // A copy: what no other function refers to can stay in registers.
+        let seen = Aligned(*motion);
+        self.control(b, &seen.0);
     }
 
     #[inline(always)]
@@ -165,7 +164,7 @@ pub(super) fn run<const N: usize>(
     let (b, h) = (&conditions.bicycle, conditions.step_s);
     let mut waiting = starts.iter().copied().enumerate();
     let still = Lanes([0.0; N]);
-    let mut state = State::upright(b, still);
+    let mut state = Aligned(State::upright(b, still));
     let mut batch = LaneBatch {
         conditions,
         backend,
@@ -189,7 +188,7 @@ pub(super) fn run<const N: usize>(
             // An empty lane is upright at rest; its computing time equals that of any other state.
             let next = waiting.next();
             let start = next.map_or_else(Start::default, |(_, start)| start);
-            state.set_lane(lane, &start.state(b));
+            state.0.set_lane(lane, &start.state(b));
             batch.initial.0[lane] = start.speed_m_s;
             batch.assist.0[lane] = 0.0;
             if let Some(riders) = &mut batch.riders {
@@ -212,12 +211,12 @@ pub(super) fn run<const N: usize>(
         if let Some(riders) = &mut batch.riders {
             riders.turn();
         }
-        let mut after = rk4(b, &state, h, &mut batch);
+        let mut after = Aligned(rk4(b, &state.0, h, &mut batch));
         for lane in 0..N {
             let steer_torques =
                 SteerTorques { assist_nm: batch.assist.0[lane], rider_nm: batch.rider_nm.0[lane] };
             let Some(ride) = &mut batch.lanes[lane] else { continue };
-            let before = state.lane(lane);
+            let before = state.0.lane(lane);
             let last = if too_stiff(batch.stiffness.map(|q| q.0[lane]), h) {
                 let rider = batch.riders.as_mut().map(|riders| riders.one(lane));
                 let mut period = Period {
@@ -232,14 +231,14 @@ pub(super) fn run<const N: usize>(
                 };
                 let last = refined(&mut period, &before);
                 let rider_state = period.rider.map(|rider: RiderLane| rider.rider_state.end);
-                after.set_lane(lane, &last.end);
+                after.0.set_lane(lane, &last.end);
                 if let (Some(riders), Some(rider_state)) = (&mut batch.riders, rider_state) {
                     riders.set(lane, &rider_state);
                 }
                 last
             } else {
                 ride.full = None;
-                Segment { start: before, end: after.lane(lane), offset: 0.0, h, substeps: 0 }
+                Segment { start: before, end: after.0.lane(lane), offset: 0.0, h, substeps: 0 }
             };
             if let Some(finished) = ride.book(conditions, steer_torques, &before, &last) {
                 done.push((ride.index, finished));

@@ -169,14 +169,16 @@ mod tests {
 
     const STEP_S: f64 = 1e-3;
     const DELAY_STEPS: usize = 60;
+    /// Lanes for every processor.
+    const LANES: usize = 4;
 
-    /// Torques of eight riders over time while roll, steer and yaw oscillate at `omega` with small
+    /// Torques of four riders over time while roll, steer and yaw oscillate at `omega` with small
     /// amplitudes, with the bicycle kept upright at 5 m/s.
     fn swung(rider: &Rider, delay: usize, omega: f64, seconds: f64) -> Vec<f64> {
         let shipped = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters.to_values();
         let b = Geometry::new(&Parameters::from_values(&shipped));
-        let state = State::upright(&b, Lanes([5.0; 8]));
-        let mut riders = RiderLanes::<8>::new(rider, delay);
+        let state = State::upright(&b, Lanes([5.0; LANES]));
+        let mut riders = RiderLanes::<LANES>::new(rider, delay);
         let mut torques = Vec::new();
         for n in 0..(seconds / STEP_S) as usize {
             torques.push(riders.rider_state.end.torque.0[3]);
@@ -184,7 +186,7 @@ mod tests {
             for (stage, part) in STAGES.into_iter().enumerate() {
                 let phase = omega * (n as f64 + part) * STEP_S;
                 let (sin, cos) = libm::sincos(phase);
-                let same = |x: f64| Lanes([x; 8]);
+                let same = |x: f64| Lanes([x; LANES]);
                 let mut motion = Motion::new(&b, &state);
                 motion.actual.roll = same(ROLL * omega * cos);
                 motion.actual.steer = same(STEER * omega * cos);
@@ -196,7 +198,7 @@ mod tests {
                     pose: &motion.pose,
                     velocities: &motion.actual,
                 };
-                riders.end_stage(&b, stage, STEP_S, &now, &same(5.0), [true; 8]);
+                riders.end_stage(&b, stage, STEP_S, &now, &same(5.0), [true; LANES]);
             }
         }
         torques

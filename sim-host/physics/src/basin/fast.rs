@@ -7,11 +7,13 @@
 use super::plain::{narrow, plain};
 use super::scan::{Border, Edge, SECTIONS, column, edges, fell, rates};
 use super::{Column, ScanPoint, Search, Work};
-use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides};
+use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides, side_by_side};
 use std::convert::Infallible;
 
-/// Number of lines of disturbances searched together: their exact rides, two for each border, fill the lanes.
-pub(super) const TOGETHER: usize = 8;
+/// Number of lines of disturbances searched together: their exact rides, two or more for each line, fill the lanes.
+pub(super) fn together() -> usize {
+    side_by_side()
+}
 
 /// Distance from a border up to which the scan's rides are ridden again in finer steps, in tolerances: there a ride is most
 /// sensitive.
@@ -21,6 +23,8 @@ const NEAR: f64 = 5.0;
 struct Line<'a, L> {
     start: &'a L,
     scan: Vec<ScanPoint>,
+    /// The quick rides of the narrowing.
+    narrowed: Vec<ScanPoint>,
     /// The edges of the scan.
     wide: Vec<Edge>,
     /// The same, narrowed by quick rides.
@@ -117,6 +121,7 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
         Self {
             start,
             scan: Vec::new(),
+            narrowed: Vec::new(),
             wide: Vec::new(),
             edges: Vec::new(),
             outer: Vec::new(),
@@ -133,6 +138,15 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
         };
         let points = self.wide.iter().zip(&self.edges).flat_map(of_edge);
         points.filter(|&(rate, near)| near && rate > 0.0).map(move |(rate, _)| (i, rate))
+    }
+
+    /// Time at which the ride with this disturbance is expected to end \[s\]: that of a quick ride's fall, or the limit.
+    fn expected_s(&self, conditions: &Conditions, rate: f64) -> f64 {
+        let known = self.narrowed.iter().chain(&self.scan).find(|point| point.rate == rate);
+        match known.map(|point| point.outcome) {
+            Some(Outcome::Fallen { time_s, .. }) => time_s,
+            _ => conditions.time_limit_s,
+        }
     }
 
     /// Whether the ride of the scan with this disturbance fell.
@@ -177,18 +191,25 @@ fn outcomes<L: Fn(f64) -> Start>(
     decided.map(|outcome| outcome.unwrap_or(Outcome::Undecided)).collect()
 }
 
-/// Exact rides, each given by its line and disturbance \[rad/s\].
+/// Exact rides, each given by its line and disturbance \[rad/s\]; the longest begin first, so that short ones fill the lanes at
+/// the end.
 fn exact<L: Fn(f64) -> Start>(
     conditions: &Conditions,
     lines: &mut [Line<L>],
     wanted: &[(usize, f64)],
 ) -> Vec<Ride> {
-    let starts: Vec<Start> = wanted.iter().map(|&(line, rate)| (lines[line].start)(rate)).collect();
-    let done = rides(conditions, &starts);
-    for (ride, &(line, _)) in done.iter().zip(wanted) {
-        lines[line].work.add(std::slice::from_ref(ride));
+    let expected_s = |&(line, rate): &(usize, f64)| lines[line].expected_s(conditions, rate);
+    let expected_s: Vec<f64> = wanted.iter().map(expected_s).collect();
+    let mut order: Vec<usize> = (0..wanted.len()).collect();
+    order.sort_by(|&a, &b| expected_s[b].total_cmp(&expected_s[a]));
+    let start = |&i: &usize| (lines[wanted[i].0].start)(wanted[i].1);
+    let done = rides(conditions, &order.iter().map(start).collect::<Vec<_>>());
+    let mut done: Vec<(usize, Ride)> = order.into_iter().zip(done).collect();
+    done.sort_by_key(|(i, _)| *i);
+    for (i, ride) in &done {
+        lines[wanted[*i].0].work.add(std::slice::from_ref(ride));
     }
-    done
+    done.into_iter().map(|(_, ride)| ride).collect()
 }
 
 /// Narrows the edges of all lines by quick rides and confirms them by exact ones.
@@ -199,8 +220,6 @@ fn confirmed<L: Fn(f64) -> Start>(
     mut lines: Vec<Line<L>>,
 ) -> Vec<Column> {
     let fine = quick.fine();
-    // A rider's delay and accelerations leave an error of the order of the tolerance in the usual steps.
-    let narrowing = if conditions.rider.is_some() { &fine } else { quick };
     loop {
         let mut wanted = Vec::new();
         for (i, line) in lines.iter().enumerate() {
@@ -210,7 +229,10 @@ fn confirmed<L: Fn(f64) -> Start>(
         if wanted.is_empty() {
             break;
         }
-        let outcomes = outcomes(conditions, narrowing, &mut lines, &wanted);
+        let outcomes = outcomes(conditions, &fine, &mut lines, &wanted);
+        for (&(line, rate), &outcome) in wanted.iter().zip(&outcomes) {
+            lines[line].narrowed.push(ScanPoint { rate, outcome });
+        }
         let mut sections = wanted.chunks(SECTIONS).zip(outcomes.chunks(SECTIONS));
         let edges = lines.iter_mut().flat_map(|line| line.edges.iter_mut().zip(&mut line.outer));
         for (edge, outer) in edges.filter(|(edge, _)| !edge.narrow(search.tolerance)) {
@@ -225,8 +247,7 @@ fn confirmed<L: Fn(f64) -> Start>(
             }
         }
     }
-    // Both ends of every edge, and the largest disturbance where none falls. Rides that do not fall are the longest, and
-    // first: the short ones fill the lanes at the end.
+    // Both ends of every edge, and the largest disturbance where none falls.
     let (mut safe, mut fallen) = (Vec::new(), Vec::new());
     for (i, line) in lines.iter().enumerate() {
         safe.extend(line.edges.iter().map(|edge| (i, edge.safe)));

@@ -138,7 +138,7 @@ impl Search {
 }
 
 /// Computes the basin at every speed, on all cores of the current rayon pool. `finished` is called after each
-/// column, `stop` is checked before each or, in a fast search, before every eight or fewer. The result does not depend on the
+/// column, `stop` is checked before each or, in a fast search, before as many as are ridden together or fewer. The result does not depend on the
 /// number of threads.
 ///
 /// # Errors
@@ -178,7 +178,7 @@ pub(super) fn columns(
 
 /// Number of lines of disturbances to search together.
 pub(super) fn together(conditions: &Conditions, search: &Search) -> usize {
-    search.quick(conditions).map_or(1, |_| fast::TOGETHER)
+    search.quick(conditions).map_or(1, |_| fast::together())
 }
 
 /// As [`basin`], with exact rides only, simulated by `rides`, which returns them in the order of the starts.

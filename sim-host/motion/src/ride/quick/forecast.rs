@@ -31,6 +31,7 @@ const GAIN_CHANGE: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub(super) struct Forecast {
     bicycle: Geometry,
+    upright: Upright,
     assist: Linear,
     schedule_speed: ScheduleSpeed,
     rider: Option<Rider>,
@@ -72,7 +73,8 @@ impl Forecast {
         let rider = conditions.rider.clone();
         let sets = rider.iter().flat_map(|rider| rider.schedule.points());
         let follows_path = sets.map(|(_, gains)| gains.get("K_y")).any(|gain| gain != Some(0.0));
-        linear.then_some(Self { bicycle, assist, schedule_speed, rider, follows_path })
+        let upright = Upright::new(&bicycle);
+        linear.then_some(Self { bicycle, upright, assist, schedule_speed, rider, follows_path })
     }
 
     /// Whether a motion is small enough. A rider's signals must all come from it, too.
@@ -106,8 +108,7 @@ impl Forecast {
         {
             return None;
         }
-        let upright = Upright::new(&self.bicycle, speed);
-        let bicycle = upright.under(gain, *delay_s)?;
+        let bicycle = self.upright.under(speed, gain, *delay_s)?;
         let x = [state.roll, state.steer, state.roll_rate, state.steer_rate];
         let (Some(rider), Some((rider_state, history))) = (&self.rider, &now.rider) else {
             let matrix = std::array::from_fn(|i| std::array::from_fn(|j| bicycle[i][j]));
@@ -129,7 +130,7 @@ impl Forecast {
             r.torque_rate,
         ];
         // With a neural delay the signals are sampled, together with the torque of the same sample.
-        let sensed = if history.is_some() { upright.under(gain, 0.0)? } else { bicycle };
+        let sensed = if history.is_some() { self.upright.under(speed, gain, 0.0)? } else { bicycle };
         let ridden = Ridden::new((&self.bicycle, speed), (rider, scheduled), &bicycle, &sensed);
         match history {
             None => {

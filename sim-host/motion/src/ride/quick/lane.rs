@@ -1,7 +1,7 @@
 //! The ride in a lane: its time, fall, amplitudes and outcome.
 
 use super::forecast::{Forecast, Now};
-use super::{CLEAR, CLEAR_RIDDEN};
+use super::{CLEAR, CLEAR_RIDDEN, SENSITIVE_S};
 use crate::bicycle::{FullState, State};
 use crate::ride::event::{fallen, largest_angles, time_of_fall};
 use crate::ride::{Conditions, FallCause, Outcome};
@@ -20,6 +20,8 @@ pub(super) struct Lane {
     late: [f64; 2],
     /// Time at which the roll first passed [`crate::ride::LaidFlat::roll_rad`] \[s\].
     flat_s: Option<f64>,
+    /// Time at which the motion first left the neighbourhood of a singular configuration \[s\].
+    pub(super) passed_s: Option<f64>,
     /// Six-speed state near singular configurations.
     pub(super) full: Option<FullState>,
     /// Earliest time of the next forecast \[s\].
@@ -35,9 +37,15 @@ impl Lane {
             peak: [0.0; 2],
             late: [0.0; 2],
             flat_s: None,
+            passed_s: None,
             full: None,
             forecast_s: 0.0,
         }
+    }
+
+    /// Whether errors had long to grow after a singular configuration.
+    pub(super) fn sensitive(&self) -> bool {
+        self.passed_s.is_some_and(|passed_s| self.t - passed_s > SENSITIVE_S)
     }
 
     /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided

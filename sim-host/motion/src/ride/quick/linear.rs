@@ -153,38 +153,43 @@ pub(super) fn times<const N: usize>(a: &Matrix<N>, x: &[f64; N]) -> [f64; N] {
 /// Time derivatives of roll, steer and their rates by these four, and by a torque on the steer axis.
 pub(super) type BicycleMatrix = [[f64; BICYCLE + 1]; BICYCLE];
 
-/// The linearised accelerations of roll and steer of upright riding: derivatives of the nonlinear equations by the entries
-/// of [`BicycleMatrix`].
-pub(super) struct Upright([[f64; 2]; BICYCLE + 1]);
+/// The linearised accelerations of roll and steer of upright riding, by the entries of [`BicycleMatrix`].
+type Derivatives = [[f64; 2]; BICYCLE + 1];
+
+/// These at every forward speed: those by the angles are a constant and a part proportional to the square of the speed (gravity and
+/// centrifugal effects), those by the rates proportional to the speed (gyroscopic effects), those by the torque constant
+/// (Meijaard 2007, eq. 5.3).
+#[derive(Clone, Debug)]
+pub(super) struct Upright {
+    at_rest: Derivatives,
+    at_one_m_s: Derivatives,
+}
 
 impl Upright {
-    /// At a forward speed \[m/s\].
-    pub(super) fn new(b: &Geometry, speed: f64) -> Self {
-        let upright = State::upright(b, Dual::constant(speed));
-        let variable = Dual { re: 0.0, eps: 1.0 };
-        let zero = Dual::constant(0.0);
-        let derivative = |state: &State<Dual>, steer: Dual| {
-            let motion = Motion::new(b, state);
-            let acc = motion.accelerations(b, &Torques { roll: zero, steer });
-            [acc.roll.eps, acc.steer.eps]
-        };
-        Self([
-            derivative(&State { roll: variable, ..upright }, zero),
-            derivative(&State { steer: variable, ..upright }, zero),
-            derivative(&State { roll_rate: variable, ..upright }, zero),
-            derivative(&State { steer_rate: variable, ..upright }, zero),
-            derivative(&upright, variable),
-        ])
+    /// From the nonlinear equations at rest and at 1 m/s.
+    pub(super) fn new(b: &Geometry) -> Self {
+        Self { at_rest: derivatives(b, 0.0), at_one_m_s: derivatives(b, 1.0) }
     }
 
-    /// Under the steer torque `gain` times the roll rate, delayed by `delay_s` to first order; `None` if not finite.
-    pub(super) fn under(&self, gain: f64, delay_s: f64) -> Option<BicycleMatrix> {
-        let torque = self.0[BICYCLE];
+    /// The derivatives at a forward speed \[m/s\].
+    fn at(&self, speed: f64) -> Derivatives {
+        let grows = [speed * speed, speed * speed, speed, speed, 0.0];
+        std::array::from_fn(|j| {
+            let (rest, one) = (self.at_rest[j], self.at_one_m_s[j]);
+            [0, 1].map(|i| rest[i] + (one[i] - rest[i]) * grows[j])
+        })
+    }
+
+    /// At a forward speed \[m/s\] under the steer torque `gain` times the roll rate, delayed by `delay_s` to first order; `None`
+    /// if not finite.
+    pub(super) fn under(&self, speed: f64, gain: f64, delay_s: f64) -> Option<BicycleMatrix> {
+        let derivatives = self.at(speed);
+        let torque = derivatives[BICYCLE];
         let mut a = [[0.0; BICYCLE + 1]; BICYCLE];
         (a[0][2], a[1][3]) = (1.0, 1.0);
         // T = gain (p - delay dp/dt), and dp/dt contains torque[0] T.
         let share = 1.0 + gain * delay_s * torque[0];
-        for (j, column) in self.0.iter().enumerate() {
+        for (j, column) in derivatives.iter().enumerate() {
             let rate = f64::from(u8::from(j == 2));
             let steer_nm = gain * (rate - delay_s * column[0]) / share;
             a[2][j] = column[0] + torque[0] * steer_nm;
@@ -192,6 +197,25 @@ impl Upright {
         }
         a.iter().flatten().all(|x| x.is_finite()).then_some(a)
     }
+}
+
+/// The derivatives of the nonlinear equations at a forward speed \[m/s\].
+fn derivatives(b: &Geometry, speed: f64) -> Derivatives {
+    let upright = State::upright(b, Dual::constant(speed));
+    let variable = Dual { re: 0.0, eps: 1.0 };
+    let zero = Dual::constant(0.0);
+    let derivative = |state: &State<Dual>, steer: Dual| {
+        let motion = Motion::new(b, state);
+        let acc = motion.accelerations(b, &Torques { roll: zero, steer });
+        [acc.roll.eps, acc.steer.eps]
+    };
+    [
+        derivative(&State { roll: variable, ..upright }, zero),
+        derivative(&State { steer: variable, ..upright }, zero),
+        derivative(&State { roll_rate: variable, ..upright }, zero),
+        derivative(&State { steer_rate: variable, ..upright }, zero),
+        derivative(&upright, variable),
+    ]
 }
 
 /// The matrix exponential of `a h`, by its series: `h` times the largest eigenvalue is below one.
@@ -216,4 +240,29 @@ pub(super) fn exponential<const N: usize>(a: &Matrix<N>, h: f64) -> Matrix<N> {
         }
     }
     sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Upright, derivatives};
+    use crate::bicycle::{Geometry, Parameters};
+
+    /// Riding at any speed: the derivatives of the nonlinear equations there are the polynomials through those at two speeds.
+    #[test]
+    fn two_speeds_give_the_derivatives_at_every_speed() {
+        let shipped = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters.to_values();
+        let b = Geometry::new(&Parameters::from_values(&shipped));
+        let upright = Upright::new(&b);
+        for i in 0..=60 {
+            let speed = 0.25 * f64::from(i);
+            for (of_two, exact) in
+                upright.at(speed).iter().flatten().zip(derivatives(&b, speed).iter().flatten())
+            {
+                assert!(
+                    (of_two - exact).abs() < 1e-9 * (1.0 + exact.abs()),
+                    "at {speed} m/s: {of_two} for {exact}"
+                );
+            }
+        }
+    }
 }

@@ -12,12 +12,13 @@ mod riders;
 mod source;
 
 use super::hardware::{self, lane_frame};
+use super::instructions::Instructions;
 use super::sensor::readings;
 use super::substeps::{nearer, stiffness};
 use super::{Conditions, Outcome, Start};
 use crate::bicycle::{FullState, Geometry, Motion, State, Torques};
 use crate::integrate::{AHEAD, STAGES, WEIGHT, rate};
-use crate::num::Lanes;
+use crate::num::{Aligned, Lanes};
 use crate::plant::Frame;
 use crate::rider::Instant;
 use controller::{Controllers, StepStart};
@@ -31,9 +32,22 @@ const LONGEST_S: f64 = 20e-3;
 /// Smallest ratio of the longest step to the control period at which quick rides are worth their inaccuracy.
 const WORTH: f64 = 5.0;
 /// Largest step relative to the time scale of the motion.
-const LARGEST: f64 = 0.05;
-/// The same of fine quick rides: a sixteenth of the error.
-const LARGEST_FINE: f64 = 0.025;
+const LARGEST: f64 = 0.1;
+/// The same with a rider, whose signals add their own errors.
+const LARGEST_RIDDEN: f64 = 0.06;
+/// Part of it with three speeds within [`NEAR`] of a singular configuration, where an error grows.
+const PART_NEAR: f64 = 0.5;
+/// Distance from a singular configuration, as a fraction of the upright bicycle's distance.
+const NEAR: f64 = 0.25;
+/// Time after a singular configuration from which a ride is ridden again in shorter steps \[s\]: the smallest error before it
+/// grows after it.
+const SENSITIVE_S: f64 = 0.3;
+/// These steps, relative to the usual ones.
+const SHORTER: f64 = 0.5;
+/// Fine steps, relative to the usual ones.
+const FINE: f64 = 0.25;
+/// The same of steps over several control periods.
+const FINE_PERIODS: f64 = 0.5;
 /// With a rider, the cosine of roll down to which the step shortens with it: nearer to the ground mostly the yaw rate grows,
 /// which is counted already. Without a rider more falls bounce there, and their times need the shorter steps.
 const LEAST_COS: f64 = 0.2;
@@ -57,6 +71,8 @@ pub struct QuickRide {
     pub outcome: Option<Outcome>,
     /// Steps taken.
     pub steps: u32,
+    /// Whether the motion went on for long after a singular configuration.
+    sensitive: bool,
 }
 
 /// Quick rides under the conditions of exact ones.
@@ -71,6 +87,8 @@ pub struct Quick<'a> {
     largest: f64,
     /// Largest step over more than one control period, relative to the time scale of the motion.
     extrapolated: f64,
+    /// Whether sensitive rides are ridden again.
+    again: bool,
 }
 
 impl<'a> Quick<'a> {
@@ -94,28 +112,49 @@ impl<'a> Quick<'a> {
         }
         let forecast = Forecast::new(conditions, &source);
         let extrapolated = if monitored { controller::EXTRAPOLATED } else { f64::INFINITY };
-        Some(Self { conditions, source, forecast, longest_s, largest: LARGEST, extrapolated })
+        let largest = if conditions.rider.is_some() { LARGEST_RIDDEN } else { LARGEST };
+        Some(Self { conditions, source, forecast, longest_s, largest, extrapolated, again: true })
     }
 
-    /// The same in shorter steps.
+    /// The same in fine steps, which narrow a border.
     pub fn fine(&self) -> Self {
-        let longest_s = if self.source.sampled().is_some() { 0.5 * self.longest_s } else { self.longest_s };
-        let extrapolated = 0.5 * self.extrapolated;
-        Self { largest: LARGEST_FINE, longest_s, extrapolated, ..self.clone() }
+        let sampled = self.source.sampled().is_some();
+        let longest_s = if sampled { FINE_PERIODS * self.longest_s } else { self.longest_s };
+        let extrapolated = FINE_PERIODS * self.extrapolated;
+        Self { largest: FINE * self.largest, longest_s, extrapolated, again: false, ..self.clone() }
     }
 }
 
-/// Simulates every ride; results in the order of `starts`.
+impl Quick<'_> {
+    /// Simulates every ride; results in the order of `starts`. A ride that goes on for long after a singular configuration is
+    /// ridden again in shorter steps.
+    pub fn rides(&self, starts: &[Start]) -> Vec<QuickRide> {
+        let instructions = Instructions::of_this_processor();
+        let mut done = instructions.quick_rides(self, starts);
+        if !self.again {
+            return done;
+        }
+        let shorter = Self { largest: SHORTER * self.largest, ..self.clone() };
+        let again: Vec<usize> = (0..done.len()).filter(|&i| done[i].sensitive).collect();
+        let starts: Vec<Start> = again.iter().map(|&i| starts[i]).collect();
+        for (i, ride) in again.into_iter().zip(instructions.quick_rides(&shorter, &starts)) {
+            done[i] = QuickRide { steps: done[i].steps + ride.steps, ..ride };
+        }
+        done
+    }
+}
+
+/// Simulates every ride once; results in the order of `starts`.
 #[inline(always)]
 pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
-    let Quick { conditions, source, forecast, longest_s, largest, extrapolated } = quick;
+    let Quick { conditions, source, forecast, longest_s, largest, extrapolated, .. } = quick;
     let b = &conditions.bicycle;
     let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
-    let mut done = vec![QuickRide { outcome: None, steps: 0 }; starts.len()];
+    let mut done = vec![QuickRide { outcome: None, steps: 0, sensitive: false }; starts.len()];
     let mut waiting = starts.iter().copied().enumerate();
     let still = Lanes([0.0; N]);
-    let mut state = State::upright(b, still);
+    let mut state = Aligned(State::upright(b, still));
     let mut initial = still;
     let mut slopes = [still; 2];
     let mut riders = conditions.rider.as_ref().map(QuickRiders::<N>::new);
@@ -125,7 +164,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
         for (lane, ride) in lanes.iter_mut().enumerate().filter(|(_, ride)| ride.is_none()) {
             let next = waiting.next();
             let start = next.map_or_else(Start::default, |(_, start)| start);
-            state.set_lane(lane, &start.state(b));
+            state.0.set_lane(lane, &start.state(b));
             initial.0[lane] = start.speed_m_s;
             slopes.iter_mut().for_each(|slope| slope.0[lane] = 0.0);
             if let Some(riders) = &mut riders {
@@ -146,14 +185,14 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
         if let Some(riders) = &mut riders {
             riders.turn();
         }
-        let (mut start, mut end, mut at) = (state, state, state);
+        let (mut start, mut end, mut at) = (state, state, state.0);
         let (mut h, mut stiff, mut at_start) = (still, [still; 4], (still, still));
         for (stage, part) in STAGES.into_iter().enumerate() {
             let motion = Motion::new(b, &at);
             let measured = readings(conditions, &motion.actual, initial);
             if stage == 0 {
                 // The pitch solved from roll and steer, not the predicted one.
-                start.pitch = motion.pose.attitude.pitch;
+                start.0.pitch = motion.pose.attitude.pitch;
                 (end, at_start, stiff) = (start, measured, stiffness(b, &motion));
                 h = steps(
                     (conditions.time_limit_s, *largest, least_cos),
@@ -167,6 +206,8 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                     },
                 );
                 if let Some(controllers) = &mut controllers {
+                    // A copy: what no other function refers to can stay in registers.
+                    let seen = Aligned(motion);
                     for (lane, ride) in lanes.iter().enumerate() {
                         let Some(ride) = ride else { continue };
                         let (frame, measured) = match &ride.full {
@@ -175,7 +216,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                                 let frame = Frame::new(&full.pose(b), &velocities, full.angles[2]);
                                 (frame, readings(conditions, &velocities, initial.0[lane]))
                             }
-                            None => (lane_frame(&motion, lane), (measured.0.0[lane], measured.1.0[lane])),
+                            None => (lane_frame(&seen.0, lane), (measured.0.0[lane], measured.1.0[lane])),
                         };
                         let rider_torque_nm =
                             riders.as_ref().map_or(0.0, |riders| riders.torque_nm().0[lane]);
@@ -204,14 +245,14 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 riders.end_stage(b, stage, (&t, h), &Instant::new(&at, &motion, &sensed), &measured.1);
             }
             let k = rate(&at, &motion, &acc);
-            end = end.after(h * WEIGHT[stage], &k);
-            at = start.after(h * AHEAD[stage], &k);
+            end.0 = end.0.after(h * WEIGHT[stage], &k);
+            at = start.0.after(h * AHEAD[stage], &k);
         }
 
         for (lane, slot) in lanes.iter_mut().enumerate() {
             let Some(ride) = slot else { continue };
-            let (before, h) = (start.lane(lane), h.0[lane]);
-            let mut after = end.lane(lane);
+            let (before, h) = (start.0.lane(lane), h.0[lane]);
+            let mut after = end.0.lane(lane);
             if nearer(stiff.map(|q| q.0[lane]), NEAREST) {
                 let from = ride.full.unwrap_or_else(|| six_speeds(b, &before));
                 let mut slope = slopes_before.map(|slope| slope.0[lane]);
@@ -225,9 +266,9 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 }
                 (slopes[0].0[lane], slopes[1].0[lane]) = (slope[0], slope[1]);
                 after = ride.full.map_or(State { rear_wheel_rate: f64::NAN, ..before }, |next| next.state());
-                end.set_lane(lane, &after);
-            } else {
-                ride.full = None;
+                end.0.set_lane(lane, &after);
+            } else if ride.full.take().is_some() {
+                ride.passed_s = ride.passed_s.or(Some(ride.t));
             }
             ride.steps += 1;
             let ended = match ride.book(conditions, (&before, &after), h) {
@@ -242,7 +283,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 ended => ended,
             };
             if let Some(outcome) = ended {
-                done[ride.index] = QuickRide { outcome, steps: ride.steps };
+                done[ride.index] = QuickRide { outcome, steps: ride.steps, sensitive: ride.sensitive() };
                 *slot = None;
             }
         }
@@ -262,9 +303,11 @@ fn steps<const N: usize>(
     let mut h = Lanes([LONGEST_S; N]);
     for (i, t) in t.iter().enumerate() {
         let Some(t) = *t else { continue };
-        let [squares, cos_roll, ..] = stiff.map(|q| q.0[i]);
+        let stiff = stiff.map(|q| q.0[i]);
+        let [squares, cos_roll, ..] = stiff;
         let rate_rad_s = squares.sqrt();
-        let scale_s = largest * cos_roll.abs().max(least_cos) / rate_rad_s;
+        let part = if nearer(stiff, NEAR) && !nearer(stiff, NEAREST) { PART_NEAR } else { 1.0 };
+        let scale_s = part * largest * cos_roll.abs().max(least_cos) / rate_rad_s;
         h.0[i] = scale_s.max(SHORTEST_S).min(longest_s(i, t, rate_rad_s)).min(time_limit_s - t);
     }
     h

@@ -69,6 +69,12 @@ impl Source<'_> {
         if let Some(sampled_nm) = sampled_nm {
             return sampled_nm;
         }
+        if let Self::Ideal(law, delay_s) = self {
+            let delayed = [rate - slopes[0] * *delay_s, speed - slopes[1] * *delay_s];
+            if let Some(torques_nm) = law.formula(delayed[0], delayed[1]) {
+                return torques_nm;
+            }
+        }
         Lanes(std::array::from_fn(|lane| {
             self.torque((rate.0[lane], speed.0[lane]), slopes.map(|slope| slope.0[lane]))
         }))

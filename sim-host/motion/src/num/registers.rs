@@ -1,0 +1,129 @@
+//! Vector registers: the arithmetic of several numbers in one instruction.
+#![allow(unsafe_code)]
+
+/// Numbers in vector registers. Every operation rounds each number as that of an `f64` does.
+///
+/// The functions must be called only on a processor that has the instructions, and are fast only in a function that is compiled for
+/// them, into which they are inlined.
+pub(in crate::num) trait Registers: Copy {
+    /// The same number in every lane.
+    fn constant(value: f64) -> Self;
+    /// Sum.
+    fn add(self, other: Self) -> Self;
+    /// Difference.
+    fn sub(self, other: Self) -> Self;
+    /// Product.
+    fn mul(self, other: Self) -> Self;
+    /// Quotient.
+    fn div(self, other: Self) -> Self;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// The opposite sign.
+    fn neg(self) -> Self;
+    /// Sine and cosine of angles from those of the reduced angles, as [`super::sincos::by_quadrant`].
+    fn by_quadrant(s: Self, c: Self, quadrant: Self) -> (Self, Self);
+
+    /// The registers with these numbers, which must be as many.
+    #[inline(always)]
+    fn load<const N: usize>(numbers: [f64; N]) -> Self {
+        // SAFETY: registers and array have the same size, and any bits are numbers.
+        unsafe { Bits { numbers }.registers }
+    }
+
+    /// The numbers in the registers.
+    #[inline(always)]
+    fn numbers<const N: usize>(self) -> [f64; N] {
+        // SAFETY: as above.
+        unsafe { Bits { registers: self }.numbers }
+    }
+}
+
+/// The same bits as an array and as registers. A union, since functions of the standard library would be compiled anew for each of
+/// some thousand operations.
+union Bits<R: Copy, const N: usize> {
+    numbers: [f64; N],
+    registers: R,
+}
+
+/// Two registers: enough independent operations to hide part of the latencies.
+macro_rules! two_registers {
+    (
+        $name:ident: $number:ident, $integer:ident, $constant:ident, $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident,
+        $bits:ident $of_bits:ident $integers:ident $minus:ident $and:ident $and_not:ident $or:ident $xor:ident $left:ident
+    ) => {
+        #[derive(Clone, Copy)]
+        pub(in crate::num) struct $name([$number; 2]);
+
+        // SAFETY of every block: the caller's processor has the instructions.
+        impl Registers for $name {
+            #[inline(always)]
+            fn constant(value: f64) -> Self {
+                Self(unsafe { [$constant(value); 2] })
+            }
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                Self(unsafe { [$add(self.0[0], other.0[0]), $add(self.0[1], other.0[1])] })
+            }
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                Self(unsafe { [$sub(self.0[0], other.0[0]), $sub(self.0[1], other.0[1])] })
+            }
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                Self(unsafe { [$mul(self.0[0], other.0[0]), $mul(self.0[1], other.0[1])] })
+            }
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                Self(unsafe { [$div(self.0[0], other.0[0]), $div(self.0[1], other.0[1])] })
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                Self(unsafe { [$sqrt(self.0[0]), $sqrt(self.0[1])] })
+            }
+            #[inline(always)]
+            fn neg(self) -> Self {
+                let mut out = self;
+                for x in &mut out.0 {
+                    *x = unsafe { $of_bits($xor($bits(*x), $integers(i64::MIN))) };
+                }
+                out
+            }
+            #[inline(always)]
+            fn by_quadrant(s: Self, c: Self, quadrant: Self) -> (Self, Self) {
+                let (mut sin, mut cos) = (s, c);
+                for i in 0..2 {
+                    unsafe {
+                        let (s, c, q) = ($bits(s.0[i]), $bits(c.0[i]), $bits(quadrant.0[i]));
+                        let swap = $minus($integers(0), $and(q, $integers(1)));
+                        let (swapped_s, swapped_c) =
+                            ($or($and_not(swap, s), $and(swap, c)), $or($and_not(swap, c), $and(swap, s)));
+                        let sin_sign = $left::<62>($and(q, $integers(2)));
+                        let cos_sign = $left::<62>($and($xor(q, $left::<1>(q)), $integers(2)));
+                        sin.0[i] = $of_bits($xor(swapped_s, sin_sign));
+                        cos.0[i] = $of_bits($xor(swapped_c, cos_sign));
+                    }
+                }
+                (sin, cos)
+            }
+        }
+    };
+}
+
+#[cfg(target_arch = "x86_64")]
+mod x86 {
+    use super::Registers;
+    use std::arch::x86_64::*;
+
+    two_registers! {
+        Avx2: __m256d, __m256i, _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
+        _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
+        _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
+    }
+    two_registers! {
+        Avx512: __m512d, __m512i, _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
+        _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_andnot_si512
+        _mm512_or_si512 _mm512_xor_si512 _mm512_slli_epi64
+    }
+}
+#[cfg(target_arch = "x86_64")]
+pub(in crate::num) use x86::{Avx2, Avx512};

@@ -1,0 +1,236 @@
+//! The loops over rides, compiled for the vector instructions of each kind of processor; the bits are the same.
+#![allow(unsafe_code)]
+
+use super::backend::Backend;
+use super::quick::{self, Quick, QuickRide};
+use super::{Conditions, Ride, Start, TracePoint, lanes};
+use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
+use crate::num::{Lanes, Scalar};
+
+/// Most rides that are simulated one after the other: as many in lanes take as long as a full batch.
+const FEW: usize = 2;
+
+/// The lanes of processors without the instructions below: NEON's registers hold two numbers.
+const ANY_LANES: usize = if cfg!(target_arch = "aarch64") { 4 } else { 1 };
+
+/// The vector instructions of a processor. Fused multiply-add is never used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Instructions {
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// Those of every processor of the target.
+    Any,
+}
+
+/// Functions compiled for these instructions.
+macro_rules! compiled {
+    ($module:ident, $features:literal, $lanes:literal) => {
+        #[cfg(target_arch = "x86_64")]
+        mod $module {
+            use super::*;
+
+            #[target_feature(enable = $features)]
+            pub(super) fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
+                lanes::run::<$lanes>(conditions, starts, None, &mut Backend::Local)
+            }
+
+            #[target_feature(enable = $features)]
+            pub(super) fn quick_rides(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
+                quick::run::<$lanes>(quick, starts)
+            }
+
+            #[target_feature(enable = $features)]
+            pub(super) fn accelerations(
+                b: &Geometry,
+                states: &[State<f64>],
+                torques: &Torques<f64>,
+            ) -> Vec<Accelerations<f64>> {
+                super::accelerations::<$lanes>(b, states, torques)
+            }
+        }
+    };
+}
+compiled!(avx512, "avx512f,avx512vl,avx512dq,avx512bw", 16);
+compiled!(avx2, "avx2", 8);
+
+impl Instructions {
+    /// The widest of this processor.
+    pub(super) fn of_this_processor() -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if std::is_x86_feature_detected!("avx2") {
+            let avx512 = std::is_x86_feature_detected!("avx512f")
+                && std::is_x86_feature_detected!("avx512vl")
+                && std::is_x86_feature_detected!("avx512dq")
+                && std::is_x86_feature_detected!("avx512bw");
+            return if avx512 { Self::Avx512 } else { Self::Avx2 };
+        }
+        Self::Any
+    }
+
+    /// All that this processor has.
+    #[cfg(test)]
+    pub(super) fn available() -> Vec<Self> {
+        match Self::of_this_processor() {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => vec![Self::Avx512, Self::Avx2, Self::Any],
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => vec![Self::Avx2, Self::Any],
+            Self::Any => vec![Self::Any],
+        }
+    }
+
+    /// Number of rides side by side.
+    pub(super) fn lanes(self) -> usize {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => 16,
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => 8,
+            Self::Any => ANY_LANES,
+        }
+    }
+
+    /// Every ride to its end, in the order of `starts`.
+    pub(super) fn rides(self, conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
+        if starts.len() <= FEW {
+            return self.in_turn(conditions, starts, None, &mut Backend::Local);
+        }
+        match self {
+            // SAFETY: the processor has these instructions, in all functions of this file.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { avx512::rides(conditions, starts) },
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { avx2::rides(conditions, starts) },
+            Self::Any => rides_of_any(conditions, starts),
+        }
+    }
+
+    /// Every quick ride, in the order of `starts`.
+    pub(super) fn quick_rides(self, quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { avx512::quick_rides(quick, starts) },
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { avx2::quick_rides(quick, starts) },
+            Self::Any => quick::run::<ANY_LANES>(quick, starts),
+        }
+    }
+
+    /// The accelerations at every state.
+    pub(super) fn accelerations(
+        self,
+        b: &Geometry,
+        states: &[State<f64>],
+        torques: &Torques<f64>,
+    ) -> Vec<Accelerations<f64>> {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => unsafe { avx512::accelerations(b, states, torques) },
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => unsafe { avx2::accelerations(b, states, torques) },
+            Self::Any => accelerations::<ANY_LANES>(b, states, torques),
+        }
+    }
+
+    /// Rides one after the other, with a record of every control period in `trace`.
+    pub(super) fn in_turn(
+        self,
+        conditions: &Conditions,
+        starts: &[Start],
+        trace: Option<&mut Vec<TracePoint>>,
+        backend: &mut Backend<'_>,
+    ) -> Vec<Ride> {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 | Self::Avx2 => unsafe { in_turn_by_avx2(conditions, starts, trace, backend) },
+            Self::Any => in_turn(conditions, starts, trace, backend),
+        }
+    }
+}
+
+/// Instructions with three operands need no copies of registers.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn in_turn_by_avx2(
+    conditions: &Conditions,
+    starts: &[Start],
+    trace: Option<&mut Vec<TracePoint>>,
+    backend: &mut Backend<'_>,
+) -> Vec<Ride> {
+    lanes::run::<1>(conditions, starts, trace, backend)
+}
+
+fn in_turn(
+    conditions: &Conditions,
+    starts: &[Start],
+    trace: Option<&mut Vec<TracePoint>>,
+    backend: &mut Backend<'_>,
+) -> Vec<Ride> {
+    lanes::run::<1>(conditions, starts, trace, backend)
+}
+
+#[cfg(target_arch = "aarch64")]
+fn rides_of_any(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
+    lanes::run::<ANY_LANES>(conditions, starts, None, &mut Backend::Local)
+}
+
+#[cfg(not(target_arch = "aarch64"))]
+fn rides_of_any(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
+    in_turn(conditions, starts, None, &mut Backend::Local)
+}
+
+#[inline(always)]
+fn accelerations<const N: usize>(
+    b: &Geometry,
+    states: &[State<f64>],
+    torques: &Torques<f64>,
+) -> Vec<Accelerations<f64>> {
+    let torques = Torques { roll: Lanes::constant(torques.roll), steer: Lanes::constant(torques.steer) };
+    let mut all = Vec::with_capacity(states.len());
+    for states in states.chunks(N) {
+        let mut side_by_side = State::upright(b, Lanes([0.0; N]));
+        for (lane, state) in states.iter().enumerate() {
+            side_by_side.set_lane(lane, state);
+        }
+        let found = Motion::new(b, &side_by_side).accelerations(b, &torques);
+        all.extend((0..states.len()).map(|lane| Accelerations {
+            roll: found.roll.0[lane],
+            steer: found.steer.0[lane],
+            rear_wheel: found.rear_wheel.0[lane],
+        }));
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bicycle::Parameters;
+    use crate::ride::Assist;
+    use control::{Config, Law};
+
+    /// Rides from gentle to violent, more than fill the lanes, on every set of instructions that this processor has: the same
+    /// bits as one after the other.
+    #[test]
+    fn every_set_of_instructions_gives_the_same_rides() {
+        let shipped = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters.to_values();
+        let b = Geometry::new(&Parameters::from_values(&shipped));
+        let plan = Config::thesis(Law::H { cut: false }).plan().unwrap();
+        let conditions = Conditions::thesis(b, Assist::Firmware(Box::new(plan)));
+        let start =
+            |i: u32| Start { speed_m_s: 4.0, steer_rate_rad_s: 0.6 * f64::from(i), ..Start::default() };
+        let starts: Vec<Start> = (1..=40).map(start).collect();
+        let quick = Quick::new(&conditions).unwrap();
+        let one_by_one = in_turn(&conditions, &starts, None, &mut Backend::Local);
+        let quick_one_by_one = quick::run::<1>(&quick, &starts);
+        let fell = one_by_one.iter().filter(|ride| ride.fell()).count();
+        assert!((5..=35).contains(&fell), "{fell} of {} rides fall", starts.len());
+        for set in Instructions::available() {
+            assert_eq!(set.rides(&conditions, &starts), one_by_one, "{set:?}");
+            assert_eq!(set.rides(&conditions, &starts[..FEW]), one_by_one[..FEW], "{set:?}");
+            assert_eq!(set.quick_rides(&quick, &starts), quick_one_by_one, "{set:?}");
+        }
+    }
+}
