@@ -25,7 +25,7 @@ struct Choice {
     dbc: Vec<PathBuf>,
     strict: bool,
     resample: Option<Resample>,
-    longest_gap_s: f64,
+    longest_gap_s: Option<f64>,
     preset: Preset,
     law: Option<String>,
     bicycle: Option<String>,
@@ -38,13 +38,13 @@ struct Choice {
 
 impl Default for Choice {
     fn default() -> Self {
-        let ReplayChoice { longest_gap_s, preset, every_s, .. } = ReplayChoice::default();
+        let ReplayChoice { preset, every_s, .. } = ReplayChoice::default();
         Self {
             map: None,
             dbc: Vec::new(),
             strict: false,
             resample: None,
-            longest_gap_s,
+            longest_gap_s: None,
             preset,
             law: None,
             bicycle: None,
@@ -96,5 +96,6 @@ pub(crate) fn replay<'py>(py: Python<'py>, file: PathBuf, choice: &str) -> PyRes
         flags::limits(py, rows.iter().map(|row| row.limits)),
         flags::causes(py, rows.iter().map(|row| row.causes)),
     );
-    Ok((json(&done.document()), json(rows), active, replay.remarks))
+    let warnings = [replay.remarks, done.result.without_effect.clone()].concat();
+    Ok((json(&done.document()), json(rows), active, warnings))
 }

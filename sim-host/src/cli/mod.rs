@@ -93,7 +93,7 @@ enum Command {
     #[command(after_help = ride::EXAMPLES)]
     Ride(Box<ride::Args>),
     /// Replay of recorded rides through the firmware: modes, causes, margins of every check.
-    #[command(after_help = replay::EXAMPLES)]
+    #[command(after_help = replay::help())]
     Replay(Box<replay::Args>),
     /// Rides and basins with the control step on a board in QEMU: processor in the loop.
     Pil(Box<pil::Args>),

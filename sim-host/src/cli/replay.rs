@@ -6,22 +6,32 @@ use super::scenario_error::failure;
 use super::{Ended, Failure, UsageError};
 use crate::commands::CommandError;
 use crate::commands::replay::{Replay, ReplayChoice, ReplayedRecording, is_frames};
-use crate::replay::{CauseRecord, Press, Resample, Summary};
+use crate::recording::CAN_LOGS;
+use crate::replay::{CauseRecord, Press, Resample, SHIPPED, Summary};
 use crate::report::figure::{self, ReplayFigure};
-use crate::report::replay::{ReplaysDocument, summary_text, text};
+use crate::report::replay::{ReplayResult, ReplaysDocument, summary_text, text};
 use crate::report::table;
 use crate::report::tool::SCHEMA;
 use crate::report::tool::Tool;
 use crate::scenario::{Preset, Scenario};
 use control::wire::encode_frame;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-pub(super) const EXAMPLES: &str = "\
+/// What the files and maps can be, and examples.
+pub(super) fn help() -> String {
+    let (logs, maps) = (CAN_LOGS.join(", "), SHIPPED.map(|(name, _)| name).join(", "));
+    format!(
+        "\
 FILE is a table of samples with named columns (also gzipped), such as the output of `monitor --csv`, a recording of
-CAN frames (candump, ASC, MDF4) with its DBC, or frames of `ride --frames` (81 bytes each).
-A map assigns the columns to sensors; see docs/replay.md. Built-in maps: extract, monitor, robot-bicycle, can-bicycle.
+CAN frames ({logs}) with its DBC, or frames of `ride --frames` (81 bytes each).
+A map assigns the columns to sensors; see docs/replay.md. Built-in maps: {maps}.
 Replay is open loop: the computed torque did not act on the recorded bicycle.
 
+{EXAMPLES}"
+    )
+}
+
+const EXAMPLES: &str = "\
 Exit codes: 0 ran, 1 bad input or nothing usable, 2 usage, 130 interrupted; alarms are a result.
 
 Examples:
@@ -71,7 +81,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Inject a fault into the recorded data, for example gyro:flip@2s; may be repeated. CHANNEL and KIND are those of `ride`
-    /// (`ride --help`); a CHANNEL alone lists its kinds
+    /// (`ride --help`) except motor; a CHANNEL alone lists its kinds
     #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
     fault: Vec<String>,
     /// Seed of the faults' noise and dropouts
@@ -96,17 +106,9 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Rejects options that have no effect on the recordings.
-fn refuse_idle(args: &Args) -> Result<(), UsageError> {
-    if args.resample == Some(Resample::Hold) && args.longest_gap.is_some() {
-        return Err(UsageError(
-            "--longest-gap is for --resample interpolate: nothing is interpolated".into(),
-        ));
-    }
-    if !args.files.iter().all(|file| is_frames(file)) {
-        return Ok(());
-    }
-    let of_samples = [
+/// The given options that act on recordings of samples only.
+fn of_samples(args: &Args) -> Vec<&'static str> {
+    let all = [
         ("--map", args.map.is_some()),
         ("--dbc", !args.dbc.is_empty()),
         ("--strict", args.strict),
@@ -115,11 +117,27 @@ fn refuse_idle(args: &Args) -> Result<(), UsageError> {
         ("--press", args.press.is_some()),
         ("--fault", !args.fault.is_empty()),
     ];
-    let Some((option, _)) = of_samples.into_iter().find(|(_, given)| *given) else { return Ok(()) };
-    let file = args.files[0].display();
-    Err(UsageError(format!(
-        "{option} acts on recordings of samples; {file} has frames, which are replayed bit for bit"
-    )))
+    all.into_iter().filter_map(|(option, given)| given.then_some(option)).collect()
+}
+
+/// Rejects options that have no effect on any recording; of those that have none on some, tells which.
+fn refuse_idle(args: &Args) -> Result<(), UsageError> {
+    let given = of_samples(args);
+    let Some(option) = given.first() else { return Ok(()) };
+    let (framed, sampled): (Vec<&PathBuf>, Vec<_>) = args.files.iter().partition(|file| is_frames(file));
+    let bit_for_bit = |file: &Path| format!("{} has frames, which are replayed bit for bit", file.display());
+    match framed.first() {
+        Some(file) if sampled.is_empty() => {
+            let frames = bit_for_bit(file);
+            return Err(UsageError(format!("{option} acts on recordings of samples; {frames}")));
+        }
+        _ => {}
+    }
+    for file in framed {
+        let (frames, options) = (bit_for_bit(file), given.join(", "));
+        complain(&format!("warning: {frames}, without effect of {options}"));
+    }
+    Ok(())
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
@@ -133,7 +151,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let named = |error| failure(&Scenario::default(), error);
     let replay = Replay::new(choice(args)).map_err(named)?;
     replay.remarks.iter().for_each(|remark| complain_once(remark));
-    let one = |file: &PathBuf| replay.file(file).map_err(of_recording);
+    let one = |file: &PathBuf| {
+        let done = replay.file(file).map_err(of_recording)?;
+        let ReplayResult { file, without_effect, .. } = &done.result;
+        without_effect.iter().for_each(|warning| complain(&format!("warning: {file}: {warning}")));
+        Ok::<_, Failure>(done)
+    };
     let outputs = args.outputs.open(Further { frames: args.frames.as_deref(), ..Further::default() })?;
     if let [file] = args.files.as_slice() {
         let done = one(file)?;
@@ -166,7 +189,7 @@ fn choice(args: &Args) -> ReplayChoice {
         dbc: args.dbc.clone(),
         strict: args.strict,
         resample: args.resample,
-        longest_gap_s: args.longest_gap.unwrap_or(defaults.longest_gap_s),
+        longest_gap_s: args.longest_gap,
         press: args.press.unwrap_or(defaults.press),
         preset: args.preset,
         law: args.law.clone(),

@@ -4,7 +4,7 @@ use super::CommandError;
 use crate::bicycle::onboard::fit;
 use crate::bicycle::{Geometry, catalogue};
 use crate::parameters;
-use crate::plant::{Fault, ImuMount};
+use crate::plant::{Channel, Fault, ImuMount};
 use crate::range::within_key;
 use crate::recording::{ReadOptions, read};
 use crate::replay::{
@@ -19,6 +19,12 @@ use control::{Config, Law, SensorFrame};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 
+/// Longest time between two samples that is interpolated, unless another is chosen \[s\].
+pub const LONGEST_GAP_S: f64 = 0.5;
+
+/// Why a longest gap has no effect.
+const HELD: &str = "is for interpolation (--resample interpolate): nothing is interpolated";
+
 /// Choices of a replay.
 #[derive(Clone, Debug)]
 pub struct ReplayChoice {
@@ -30,8 +36,8 @@ pub struct ReplayChoice {
     pub strict: bool,
     /// Between two samples; `None`: the map's.
     pub resample: Option<Resample>,
-    /// Longest time between two samples that is interpolated \[s\].
-    pub longest_gap_s: f64,
+    /// Longest time between two samples that is interpolated \[s\]; `None`: [`LONGEST_GAP_S`].
+    pub longest_gap_s: Option<f64>,
     /// When the switch is pressed in a recording without one.
     pub press: Press,
     /// Defaults of the parameters.
@@ -60,7 +66,7 @@ impl Default for ReplayChoice {
             dbc: Vec::new(),
             strict: false,
             resample: None,
-            longest_gap_s: 0.5,
+            longest_gap_s: None,
             press: Press::Again,
             preset: Preset::Product,
             law: None,
@@ -116,8 +122,9 @@ impl Replay {
     /// # Errors
     /// A wrong choice, with its name.
     pub fn new(choice: ReplayChoice) -> Result<Self, CommandError> {
+        let longest_gap_s = choice.longest_gap_s.unwrap_or(LONGEST_GAP_S);
         for (name, key, time_s) in
-            [("longest-gap", "longest_gap_s", choice.longest_gap_s), ("every", "every_s", choice.every_s)]
+            [("longest-gap", "longest_gap_s", longest_gap_s), ("every", "every_s", choice.every_s)]
         {
             within_key(key, "time (s)", time_s, 1e-6, 3600.0).map_err(|e| CommandError::choice(name, e))?;
         }
@@ -130,9 +137,19 @@ impl Replay {
             (None, None) => base.law.clone(),
         };
         let faults = choice.faults.iter().map(|text| text.parse::<Fault>());
-        let faults = faults.collect::<Result<_, _>>().map_err(|e| CommandError::choice("fault", e))?;
+        let faults: Vec<_> =
+            faults.collect::<Result<_, _>>().map_err(|e| CommandError::choice("fault", e))?;
+        if faults.iter().any(|fault| fault.channel == Channel::Motor) {
+            let reason =
+                "motor faults have no effect: the motor of a recorded ride does not receive the command";
+            return Err(CommandError::Idle { name: "fault", reason });
+        }
         let map = choice.map.as_deref().map(Map::load).transpose();
         let map = map.map_err(|e| CommandError::choice("map", e))?;
+        let held = choice.resample.or(map.as_ref().map(|map| map.resample)) == Some(Resample::Hold);
+        if held && choice.longest_gap_s.is_some() {
+            return Err(CommandError::Idle { name: "longest-gap", reason: HELD });
+        }
         let law_name = law.to_string();
         let mut config = Config { law, ..base };
         let mut remarks = Vec::new();
@@ -202,11 +219,15 @@ impl Replay {
         let feed = FeedOptions {
             period_s: 1.0 / f64::from(plan.config().rate_hz),
             resample,
-            longest_gap_s: choice.longest_gap_s,
+            longest_gap_s: choice.longest_gap_s.unwrap_or(LONGEST_GAP_S),
             faults: &self.faults,
             seed: choice.seed,
         };
         let mut feed = Feed::new(&samples, feed).map_err(|error| format!("{name}: {error}"))?;
+        let mut without_effect = self.idle_faults(&samples, &plan, feed.len());
+        if resample == Resample::Hold && choice.longest_gap_s.is_some() {
+            without_effect.push(format!("the longest gap {HELD}"));
+        }
         let mut kept = Vec::new();
         let options = RunOptions {
             press: choice.press,
@@ -226,8 +247,21 @@ impl Replay {
         };
         let config = self.resolved(&plan, Some(resample));
         let remarks = samples.remarks.iter().map(ToString::to_string).collect();
-        let result = ReplayResult { file: name, remarks, fitted, replayed };
+        let result = ReplayResult { file: name, remarks, without_effect, fitted, replayed };
         Ok(ReplayedRecording { result, config, frames: kept })
+    }
+
+    /// Warnings about the faults without effect on a recording of these samples and control instants.
+    fn idle_faults(&self, samples: &Samples, plan: &control::Plan, instants: u64) -> Vec<String> {
+        let config = plan.config();
+        let idle = |fault: &Fault| match fault.channel {
+            Channel::Sensor(sensor) if samples.track(sensor).is_none() => {
+                Some("the recording has no such sensor".into())
+            }
+            _ => fault.idle(&config.input, instants, 1.0 / f64::from(config.rate_hz)),
+        };
+        let told = |fault: &Fault| idle(fault).map(|why| format!("the fault {fault} has no effect: {why}"));
+        self.faults.iter().filter_map(told).collect()
     }
 
     /// Replays recorded frames bit for bit, with the switch that they contain.
@@ -250,7 +284,8 @@ impl Replay {
         let mut each = all.iter().copied();
         let replayed = run_through(&plan, &options, |_| each.next().filter(|_| !stop()));
         let config = self.resolved(&plan, None);
-        let result = ReplayResult { file: name, remarks: Vec::new(), fitted, replayed };
+        let (remarks, without_effect) = (Vec::new(), Vec::new());
+        let result = ReplayResult { file: name, remarks, without_effect, fitted, replayed };
         let frames = all.into_iter().map(|(_, frame)| frame).collect();
         Ok(ReplayedRecording { result, config, frames })
     }

@@ -57,7 +57,7 @@ impl Setup {
         Ok(setup)
     }
 
-    /// Doubts about bicycle, rider and files, as text: those about the bicycle with its name.
+    /// Doubts about bicycle, rider and files, and faults without effect, as text: those about the bicycle with its name.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         let bicycle = &self.config.bicycle;
         let of_bicycle = bicycle.warnings.iter().map(|doubt| format!("{}: {doubt}", bicycle.name));

@@ -18,6 +18,9 @@ mod remarks;
 pub(crate) mod stamp;
 pub mod table;
 
+/// The formats of CAN logs that are read.
+pub const CAN_LOGS: [&str; 4] = ["candump", "ASC", "BLF", "MDF 4"];
+
 pub use columns::{Column, Group, Recording};
 pub use read::{ReadOptions, RecordingError, cut_line, frames, read};
 pub use remarks::Remark;

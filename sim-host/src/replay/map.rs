@@ -237,9 +237,8 @@ impl Map {
             }
         }
         for Mapped { sensor, signal } in self.sensors() {
-            let key = sensor.name().replace('-', "_");
             let checked = signal.check(axes_of(sensor), quantity_of(sensor));
-            checked.map_err(|error| MapTextError::Signal { key, error })?;
+            checked.map_err(|error| MapTextError::Signal { key: sensor.key().into(), error })?;
         }
         let References { roll, torque, distance } = &self.reference;
         let Perturbation { lateral_force, steer_torque, roll_rate } = &self.perturbation;

@@ -31,6 +31,8 @@ pub struct ReplayResult {
     pub file: String,
     /// Data that is unusable or looks wrong.
     pub remarks: Vec<String>,
+    /// Warnings about choices and injected faults without effect on this recording.
+    pub without_effect: Vec<String>,
     /// Sensors and checks switched off because the recording lacks their data.
     #[serde(flatten)]
     pub fitted: Fitted,

@@ -233,7 +233,7 @@ pub struct ResolvedConfig {
     pub fall: FallCriterion,
     /// Time limit of a ride \[s\].
     pub time_limit_s: f64,
-    /// Doubts about the combination of rider and bicycle.
+    /// Doubts about rider, sensors and files, and faults without effect.
     pub warnings: Vec<String>,
     /// A ride has recovered if, in its last second, roll and steer stay below this fraction of their maxima.
     pub recovered_below: f64,

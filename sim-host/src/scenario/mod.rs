@@ -8,6 +8,7 @@ mod cut_files;
 mod error;
 mod fall;
 mod file;
+mod idle;
 pub mod law;
 mod named;
 pub mod parameter_file;

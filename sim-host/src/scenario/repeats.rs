@@ -9,13 +9,9 @@ pub(super) fn warnings(config: &Config, sensors: &SensorConfig) -> Vec<String> {
     if config.cross.same_checks == 0 {
         return Vec::new();
     }
-    let fitted = [
-        (Sensor::Gyro, config.input.gyro.fitted),
-        (Sensor::Accel, config.input.accel.fitted),
-        (Sensor::Steer, config.input.steer.fitted),
-        (Sensor::FrontWheel, config.input.front_wheel.fitted),
-        (Sensor::RearWheel, config.input.rear_wheel.fitted),
-    ];
+    let sensors_of_motion =
+        [Sensor::Gyro, Sensor::Accel, Sensor::Steer, Sensor::FrontWheel, Sensor::RearWheel];
+    let fitted = sensors_of_motion.map(|sensor| (sensor, sensor.declared(&config.input).fitted));
     let changing = |(sensor, fitted): &(Sensor, bool)| *fitted && changes(sensors.model(*sensor));
     let Some((noisy, _)) = fitted.iter().find(|sensor| changing(sensor)) else { return Vec::new() };
     let imu = [(fitted[0], Cause::GyroStuck), (fitted[1], Cause::AccelStuck)];

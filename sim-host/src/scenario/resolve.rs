@@ -5,7 +5,7 @@ use super::error::ScenarioError;
 use super::rider::LoadedRider;
 use super::setting::DRAWS;
 use super::ticks::{LONGEST_S, whole_ticks};
-use super::{AssistKind, Preset, Scenario, cut_files, law, parameter_file::ParameterFile, repeats};
+use super::{AssistKind, Preset, Scenario, cut_files, idle, law, parameter_file::ParameterFile, repeats};
 use crate::bicycle::Geometry;
 use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::onboard::fit;
@@ -31,7 +31,7 @@ pub struct Resolved {
     pub law: Law,
     /// Its name, or the file as given.
     pub law_name: String,
-    /// Doubts about rider and files, as text; those about the bicycle are in the bicycle.
+    /// Doubts about rider and files, and faults without effect, as text; doubts about the bicycle are in the bicycle.
     pub warnings: Vec<String>,
     /// Choices that were made to suit bicycle and delay, as text.
     pub notes: Vec<String>,
@@ -98,6 +98,7 @@ impl Scenario {
         let sensor_delay_ticks = whole_ticks(self.sensor_delay_s, step_s, LONGEST_S)
             .map_err(|e| ScenarioError::value("sensor_delay_s", e))?;
         let conditions = self.conditions(&bicycle, assist, rider.as_ref(), (step_s, plant));
+        warnings.extend(idle::warnings(&self.plant, &conditions));
         let conditions = Conditions { schedule_speed, sensor_delay_ticks, ..conditions };
         conditions.check()?;
         let own_law = self.law.as_ref().map(|_| law::content(&law_name, &law));

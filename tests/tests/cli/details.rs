@@ -210,3 +210,43 @@ fn possibly_cut_files_cause_a_warning() {
         0
     );
 }
+
+/// Situation: the published conditions, which have a gyro and the front wheel's speed; 6 s.
+/// Action: ride with faults and sensor errors that cannot act, and with those that can.
+/// Must hold: the first are told with the reason, in the output and in the document; the others are not.
+#[test]
+fn faults_that_cannot_act_are_told() {
+    let bench = Bench::new(PROGRAM);
+    let declared = "--set input.path.fitted=on";
+    let no_sensor = "the controller has no such sensor (--set input.path.fitted=on)";
+    for (options, warning) in [
+        ("--fault path:missing", Some(no_sensor)),
+        ("--sensor path:noise=0.1", Some(no_sensor)),
+        ("--fault rear-wheel:nan@1s", Some("--set input.rear_wheel.fitted=on")),
+        ("--fault motor-report:flip", Some("--set input.motor.fitted=on")),
+        ("--fault gyro:stuck@100s", Some("it begins at 100 s, and the end is at 6.000 s")),
+        ("--fault motor:dead@6s", Some("the end is at 6.000 s")),
+        ("--fault gyro:stuck@0.1ms..0.2ms", Some("no control instant is in its time")),
+        ("--law none --fault motor:dead", Some("without a law")),
+        ("--rider smart --fault gyro:nan", Some("without a law")),
+        (&format!("--fault path:missing {declared}"), None),
+        (&format!("--sensor path:noise=0.1 {declared}"), None),
+        ("--fault gyro:stuck@5.999s", None),
+        ("--fault clock:stuck@1s --fault motor:dead --fault engage:flip", None),
+        ("--fault rear-wheel:missing --set input.rear_wheel.fitted=on --set input.wheel=rear", None),
+        ("--sensor mpu6050-robot", None),
+    ] {
+        let run = bench.run(&format!("ride --speed 6 --steer-rate 0.1 {options} --json"));
+        assert_eq!(run.code, Some(0), "{options}: {run:?}");
+        let document: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+        let recorded = document["config"]["warnings"].to_string();
+        for text in [&run.stderr, &recorded] {
+            match warning {
+                Some(warning) => {
+                    assert!(text.contains("no effect") && text.contains(warning), "{options}: {text}");
+                }
+                None => assert!(!text.contains("no effect"), "{options}: {text}"),
+            }
+        }
+    }
+}

@@ -52,3 +52,34 @@ fn faults_of_other_sensors() {
     assert!((0.05..3.0).contains(&peak_nm), "{peak_nm}");
     bench.run("replay ride.csv --map extract --fault gyro:melts@2s").rejected_naming(&["--fault", "melts"]);
 }
+
+/// Situation: a ride of 4 s with gyro, accelerometer, steer and wheels.
+/// Action: replay it, alone and beside another, with faults of a sensor that was not recorded, of one that the preset
+/// does not have, after the end, between two control instants and of the motor; with one of the gyro.
+/// Must hold: the first four are told with the recording and the reason, in the document as well; the motor's is refused as wrong
+/// usage; the gyro's is not told.
+#[test]
+fn faults_that_cannot_act_are_told() {
+    let bench = bench(800);
+    bench.write("other.csv", bench.read("ride.csv"));
+    for (options, reason) in [
+        ("--fault path:missing", "the recording has no such sensor"),
+        ("--preset thesis --fault steer:nan", "--set input.steer.fitted=on"),
+        ("--fault gyro:stuck@100s", "it begins at 100 s, and the end is at 3.996 s"),
+        ("--fault gyro:stuck@0.1ms..0.2ms", "no control instant is in its time"),
+    ] {
+        let run = bench.run(&format!("replay ride.csv --map extract {options} --json"));
+        let document: Value = serde_json::from_str(&run.stdout).unwrap_or_else(|_| panic!("{run:?}"));
+        let recorded = document["without_effect"].to_string();
+        for text in [&run.stderr, &recorded] {
+            assert!(text.contains("has no effect: ") && text.contains(reason), "{options}: {text}");
+        }
+        let run = bench.run(&format!("replay ride.csv other.csv --map extract {options}"));
+        let told = |file: &str| run.stderr.contains(&format!("warning: {file}: the fault "));
+        assert!(run.code == Some(0) && told("ride.csv") && told("other.csv"), "{run:?}");
+    }
+    let run = bench.run("replay ride.csv --map extract --fault motor:dead");
+    assert!(run.code == Some(2) && run.stderr.contains("--fault: motor faults have no effect"), "{run:?}");
+    let run = bench.run("replay ride.csv --map extract --fault gyro:stuck@3s");
+    assert!(run.code == Some(0) && run.stderr.is_empty(), "{run:?}");
+}

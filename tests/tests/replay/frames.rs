@@ -1,6 +1,6 @@
 //! Rides of the simulator, replayed.
 
-use super::PROGRAM;
+use super::{PROGRAM, SMALLEST, bench};
 use tests::cli::Bench;
 
 /// A column of a table, below its lines with `#`.
@@ -77,4 +77,31 @@ fn frames_that_are_none() {
     for line in ["ride.csv --seed 3", "ride.csv --resample hold --longest-gap 1"] {
         assert_eq!(bench.run(&format!("replay {line}")).code, Some(2), "{line}");
     }
+}
+
+/// Situation: frames of a ride beside a table of samples; maps that hold and that interpolate.
+/// Action: replay with options that act on samples; with a longest gap and each map, or with none.
+/// Must hold: a warning names the frames and the options; the gap is refused as wrong usage beside a map that holds, told where
+/// the map follows from the columns and holds, and taken where samples are interpolated.
+#[test]
+fn options_without_effect_on_one_recording_are_told() {
+    let bench = bench(400);
+    bench.write("t.toml", SMALLEST);
+    bench.write("interpolated.toml", format!("resample = 'interpolate'\n{SMALLEST}"));
+    let made = bench.run("replay ride.csv --map t.toml --frames ride.frames");
+    assert_eq!(made.code, Some(0), "{made:?}");
+    let run = bench.run("replay ride.csv ride.frames --map t.toml --press once");
+    let warning =
+        "warning: ride.frames has frames, which are replayed bit for bit, without effect of --map, --press\n";
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), warning));
+
+    let gap = |more: &str| bench.run(&format!("replay ride.csv --longest-gap 0.2 {more}"));
+    let run = gap("--map t.toml");
+    assert!(run.code == Some(2) && run.stderr.contains("--longest-gap: is for interpolation"), "{run:?}");
+    for line in ["--map interpolated.toml", "--map t.toml --resample interpolate"] {
+        let run = gap(line);
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{line}");
+    }
+    let run = gap("");
+    assert!(run.code == Some(0) && run.stderr.contains("ride.csv: the longest gap is for"), "{run:?}");
 }

@@ -1,9 +1,11 @@
 //! Meaning of the columns by a map.
 
-use super::{SMALLEST, sampled, track};
+use super::{PROGRAM, SMALLEST, sampled, track};
 use sim_host::plant::Sensor;
+use sim_host::recording::CAN_LOGS;
 use sim_host::replay::{Map, SHIPPED};
 use std::f64::consts::PI;
+use tests::cli::Bench;
 
 /// Within rounding errors of this number of digits.
 fn near(a: f64, b: f64) -> bool {
@@ -147,4 +149,15 @@ fn shipped_maps_are_right() {
         columns.dedup();
         assert_eq!(columns.len(), all, "{name}");
     }
+}
+
+/// Situation: the shipped maps and the formats of CAN logs.
+/// Action: the help of `replay`.
+/// Must hold: it lists each.
+#[test]
+fn the_help_lists_every_map_and_log() {
+    let help = Bench::new(PROGRAM).run("replay --help").stdout;
+    let words: Vec<&str> = help.split_whitespace().collect();
+    let listed = |names: &[&str]| words.join(" ").contains(&names.join(", "));
+    assert!(listed(&SHIPPED.map(|(name, _)| name)) && listed(&CAN_LOGS), "{help}");
 }

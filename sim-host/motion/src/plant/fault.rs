@@ -88,7 +88,7 @@ pub struct FaultState {
 }
 
 /// First tick at or after a time; exact for times that are whole numbers of periods.
-fn tick_of(time_s: f64, period_s: f64) -> i64 {
+pub(super) fn tick_of(time_s: f64, period_s: f64) -> i64 {
     // The conversion saturates at infinity.
     (time_s / period_s - 1e-6).ceil() as i64
 }

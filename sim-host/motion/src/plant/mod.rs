@@ -6,6 +6,7 @@ mod fault;
 mod fault_text;
 mod fitted;
 mod friction;
+mod idle_fault;
 mod reading;
 mod sensor;
 mod sensor_suite;

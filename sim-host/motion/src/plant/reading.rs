@@ -66,6 +66,21 @@ impl Sensor {
         }
     }
 
+    /// Name in the keys of the firmware's parameters, `input.NAME`, and of maps.
+    pub const fn key(self) -> &'static str {
+        match self {
+            Self::Gyro => "gyro",
+            Self::Accel => "accel",
+            Self::Steer => "steer",
+            Self::SteerRate => "steer_rate",
+            Self::FrontWheel => "front_wheel",
+            Self::RearWheel => "rear_wheel",
+            Self::RiderTorque => "rider_torque",
+            Self::MotorReport => "motor",
+            Self::Path => "path",
+        }
+    }
+
     /// Names of the axes; none for a sensor with one axis.
     pub const fn axes(self) -> &'static [&'static str] {
         match self {

@@ -123,15 +123,15 @@ pub(super) fn exact_frame(plan: &Plan, reading: &Reading, ticks: u32, engage: bo
 #[inline(always)]
 fn fitted(plan: &Plan, (now_us, engage): (u32, bool), of: impl Fn(Sensor) -> ([f64; 3], u16)) -> SensorFrame {
     let input = &plan.config().input;
-    let one = |fitted: bool, sensor: Sensor, axis: usize| {
-        if !fitted {
+    let one = |sensor: Sensor, axis: usize| {
+        if !sensor.declared(input).fitted {
             return Sample::missing();
         }
         let (value, age_ticks) = of(sensor);
         Sample { value: value[axis] as f32, age_ticks }
     };
-    let three = |fitted: bool, sensor: Sensor| {
-        if !fitted {
+    let three = |sensor: Sensor| {
+        if !sensor.declared(input).fitted {
             return Triple::missing();
         }
         let (value, age_ticks) = of(sensor);
@@ -139,16 +139,16 @@ fn fitted(plan: &Plan, (now_us, engage): (u32, bool), of: impl Fn(Sensor) -> ([f
     };
     SensorFrame {
         now_us,
-        gyro_rad_s: three(input.gyro.fitted, Sensor::Gyro),
-        accel_m_s2: three(input.accel.fitted, Sensor::Accel),
-        steer_rad: one(input.steer.fitted, Sensor::Steer, 0),
-        steer_rate_rad_s: one(input.steer_rate.fitted, Sensor::SteerRate, 0),
-        front_wheel_m_s: one(input.front_wheel.fitted, Sensor::FrontWheel, 0),
-        rear_wheel_m_s: one(input.rear_wheel.fitted, Sensor::RearWheel, 0),
-        rider_torque_nm: one(input.rider_torque.fitted, Sensor::RiderTorque, 0),
-        motor_torque_nm: one(input.motor.fitted, Sensor::MotorReport, 0),
-        heading_error_rad: one(input.path.fitted, Sensor::Path, 0),
-        lateral_error_m: one(input.path.fitted, Sensor::Path, 1),
+        gyro_rad_s: three(Sensor::Gyro),
+        accel_m_s2: three(Sensor::Accel),
+        steer_rad: one(Sensor::Steer, 0),
+        steer_rate_rad_s: one(Sensor::SteerRate, 0),
+        front_wheel_m_s: one(Sensor::FrontWheel, 0),
+        rear_wheel_m_s: one(Sensor::RearWheel, 0),
+        rider_torque_nm: one(Sensor::RiderTorque, 0),
+        motor_torque_nm: one(Sensor::MotorReport, 0),
+        heading_error_rad: one(Sensor::Path, 0),
+        lateral_error_m: one(Sensor::Path, 1),
         engage,
     }
 }
