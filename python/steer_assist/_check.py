@@ -6,7 +6,7 @@ import math
 import os
 import sys
 import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +26,9 @@ SUSPICIOUS = [
 ]
 
 
-def plain(value: Any, key: str = "") -> Any:
-    """The value as dictionaries, lists, numbers and text; None is left out of dictionaries.
+def plain(value: Any, key: str = "", largest: float | None = None) -> Any:
+    """The value as dictionaries, lists, numbers and text; None is left out of dictionaries. ``largest`` takes the place of numbers that
+    are not finite; without it they are rejected.
 
     Raises
     ------
@@ -35,21 +36,44 @@ def plain(value: Any, key: str = "") -> Any:
         A number that is not finite, an array of more than one dimension, or a value of another kind, with its key.
     """
     if isinstance(value, Mapping):
-        inner = {str(name): plain(item, f"{key}.{name}" if key else str(name)) for name, item in value.items()}
+        inner = {str(name): plain(item, f"{key}.{name}" if key else str(name), largest) for name, item in value.items()}
         return {name: item for name, item in inner.items() if item is not None}
     if isinstance(value, np.ndarray) or (hasattr(value, "to_numpy") and not isinstance(value, str)):
-        return listed(np.asarray(value), key)
+        return listed(np.asarray(value), key, largest)
     if isinstance(value, (list, tuple, range)):
-        return [plain(item, f"{key}[{i}]") for i, item in enumerate(value)]
+        return [plain(item, f"{key}[{i}]", largest) for i, item in enumerate(value)]
     if isinstance(value, np.generic):
-        return plain(value.item(), key)
+        return plain(value.item(), key, largest)
     if isinstance(value, float) and not math.isfinite(value):
+        if largest is not None:
+            return largest
         raise ScenarioError(f"{key} = {value} is not a finite number", key)
     if isinstance(value, Path):
         return str(value)
     if value is None or isinstance(value, (bool, int, float, str)):
         return value
     raise ScenarioError(f"{key}: {kind(value)} is no value of a scenario", key)
+
+
+def ranged(value: Any, check: Callable[[Any], object]) -> Any:
+    """As :func:`plain`; the error of a number that is not finite has the range that ``check`` names for the largest number in its
+    place.
+
+    Raises
+    ------
+    ScenarioError
+        As of :func:`plain`.
+    """
+    try:
+        return plain(value)
+    except ScenarioError as error:
+        try:
+            check(plain(value, largest=sys.float_info.max))
+        except ScenarioError as other:
+            if other.range is not None and other.key == error.key:
+                least, most = other.range
+                raise ScenarioError(f"{error}; the range is {least:g} to {most:g}", error.key, other.range) from None
+        raise
 
 
 def kind(value: Any) -> str:
@@ -93,13 +117,13 @@ def threads(number: int | None) -> int | None:
     return None if number is None else int(number)
 
 
-def listed(array: np.ndarray, key: str) -> Any:
+def listed(array: np.ndarray, key: str, largest: float | None) -> Any:
     """An array as a number or a list."""
     if array.ndim == 0 and array.dtype == object:
         raise ScenarioError(f"{key}: {kind(array.item())} is no value of a scenario", key)
     if array.ndim > 1:
         raise ScenarioError(f"{key}: an array of shape {array.shape}; expected one dimension", key)
-    return plain(array.tolist(), key)
+    return plain(array.tolist(), key, largest)
 
 
 def doubt_units(value: Any, key: str = "") -> None:

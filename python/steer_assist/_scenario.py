@@ -12,7 +12,7 @@ import xarray as xr
 
 from . import _core
 from ._bicycle import as_bicycle
-from ._check import doubt_units, kind, plain, warn
+from ._check import doubt_units, kind, ranged, warn
 from ._data import document
 from .errors import ScenarioError, ScenarioWarning
 
@@ -46,7 +46,7 @@ def scenario(base: Any = None, /, **changes: Any) -> dict[str, Any]:
         merged["bicycle"] = as_bicycle(merged["bicycle"])
     if "law" in merged:
         merged["law"] = as_law(merged["law"])
-    data: dict[str, Any] = plain(merged)
+    data: dict[str, Any] = ranged(merged, lambda tried: _core.check(text(tried)))
     doubt_units(data)
     return data
 

@@ -41,6 +41,10 @@ def test_the_key_is_named(changes, key, words):
         ({"speed_m_s": 31}, "start.speed_m_s", -30, 30),
         ({"torque_limit_nm": -1}, "torque_limit_nm", 0, None),
         ({"time_limit_s": 0}, None, None, 3600),
+        ({"speed_m_s": np.nan}, "start.speed_m_s", -30, 30),
+        ({"speed_m_s": -np.inf}, "start.speed_m_s", -30, 30),
+        ({"time_limit_s": np.float32(np.nan)}, "time_limit_s", 0.001, 3600),
+        ({"torque_limit_nm": np.nan}, "torque_limit_nm", 0, 50),
     ],
 )
 def test_the_range_is_named(changes, key, least, most):
@@ -144,10 +148,10 @@ def test_every_rejected_value_has_its_key_and_range(here, use, key, least, most)
 def test_a_start_is_needed():
     with pytest.raises(sa.ScenarioError, match="must be given") as raised:
         sa.ride()
-    assert raised.value.key == "start.speed_m_s"
+    assert (raised.value.key, raised.value.range) == ("start.speed_m_s", (-30.0, 30.0))
     with pytest.raises(sa.ScenarioError) as raised:
         sa.plane()
-    assert raised.value.key == "plane.speed"
+    assert (raised.value.key, raised.value.range) == ("plane.speed", (0.0, 30.0))
 
 
 def test_a_parameter_of_a_bicycle():

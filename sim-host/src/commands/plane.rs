@@ -3,7 +3,7 @@
 use super::{CommandError, Hooks, Setup};
 use crate::basin::{Plane, PlaneSearch, plane as search_plane};
 use crate::report::plane::PlaneDocument;
-use crate::scenario::{Scenario, ScenarioError};
+use crate::scenario::{Scenario, ScenarioError, SpeedsError};
 use std::time::Instant;
 
 /// A complete or partial basin over two rates.
@@ -21,7 +21,7 @@ pub struct PlaneFound {
 /// # Errors
 /// The scenario has none.
 pub fn search(scenario: &Scenario) -> Result<PlaneSearch, ScenarioError> {
-    scenario.plane.ok_or_else(|| ScenarioError::value("plane.speed", "must be given"))
+    scenario.plane.ok_or_else(|| ScenarioError::value("plane.speed", SpeedsError::Missing { least_m_s: 0.0 }))
 }
 
 /// Rejects conditions that the mirror image of a ride does not have.

@@ -3,7 +3,8 @@
 use super::{CommandError, Setup};
 use crate::report::document::RideDocument;
 use crate::ride::{Assist, Conditions, Ride, Start, TracePoint, traced, traced_until};
-use crate::scenario::{Scenario, ScenarioError};
+use crate::scenario::speeds::FASTEST_M_S;
+use crate::scenario::{Scenario, ScenarioError, SpeedsError};
 
 /// A ride with its record.
 #[derive(Clone, Debug)]
@@ -19,7 +20,9 @@ pub struct Ridden {
 /// # Errors
 /// The scenario has none.
 pub fn start(scenario: &Scenario) -> Result<Start, ScenarioError> {
-    scenario.start.ok_or_else(|| ScenarioError::value("start.speed_m_s", "must be given"))
+    scenario.start.ok_or_else(|| {
+        ScenarioError::value("start.speed_m_s", SpeedsError::Missing { least_m_s: -FASTEST_M_S })
+    })
 }
 
 /// Rejects a backward ride with assist or rider, which are defined for forward riding only.

@@ -140,6 +140,9 @@ pub(crate) fn write_new(path: &Path, content: &[u8]) -> Result<bool, OutputError
 /// The error of a temporary file in `folder`, without its name, which the user does not know.
 fn without_name(error: &io::Error, folder: &Path) -> io::Error {
     match error.kind() {
+        io::ErrorKind::NotFound if folder.is_dir() => {
+            io::Error::other(format!("no file can be made in {}", folder.display()))
+        }
         kind @ io::ErrorKind::NotFound => {
             io::Error::new(kind, format!("there is no folder {}", folder.display()))
         }

@@ -26,7 +26,7 @@ pub(crate) fn search_key(error: &SearchError) -> &'static str {
 pub(super) fn conditions_key(error: &ConditionsError) -> Option<&'static str> {
     match error {
         ConditionsError::Rider(_) => Some("rider"),
-        ConditionsError::Plant(_) => Some("plant"),
+        ConditionsError::Plant(_) => Some(error.range().and_then(|error| error.key).unwrap_or("plant")),
         ConditionsError::IdealLaw => Some("assist"),
         _ => error.range().and_then(|error| error.key),
     }
@@ -58,7 +58,9 @@ pub fn bounds(reason: &(dyn Error + 'static)) -> Option<(f64, f64)> {
     if let Some(TimeError::Range { max_s, .. }) = reason.downcast_ref() {
         return Some((0.0, *max_s));
     }
-    if let Some(SpeedsError::Range { least_m_s, .. }) = reason.downcast_ref() {
+    if let Some(SpeedsError::Range { least_m_s, .. } | SpeedsError::Missing { least_m_s }) =
+        reason.downcast_ref()
+    {
         return Some((*least_m_s, FASTEST_M_S));
     }
     if let Some(TicksError::Range { period_s, most_s, .. }) = reason.downcast_ref() {

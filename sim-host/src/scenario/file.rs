@@ -37,7 +37,7 @@ impl Scenario {
     /// result of `ride`, `basin` or `basin plane`, the scenario in it.
     ///
     /// # Errors
-    /// States file, line or key, and what was expected.
+    /// States file, line or key, and what was expected; a file without a key is no scenario.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
         let text = match path.to_str() {
             Some("-") => input_file::standard_input(),
@@ -47,7 +47,11 @@ impl Scenario {
         let text = text.trim_start_matches('\u{feff}');
         let json = text.trim_start().starts_with('{')
             || path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
-        let read = if json { Self::from_json(text) } else { Self::from_toml(text) };
+        let read = match (states_nothing(text, json), json) {
+            (true, _) => Err(SyntaxError::new(&NOTHING)),
+            (false, true) => Self::from_json(text),
+            (false, false) => Self::from_toml(text),
+        };
         read.map_err(|reason| ScenarioError::Syntax { path: path.into(), reason })
     }
 
@@ -89,6 +93,18 @@ impl Scenario {
     /// A number that TOML does not have: a seed above 2^63 - 1, which only code can set.
     pub fn to_toml(&self) -> Result<String, SyntaxError> {
         toml::to_string(self).map_err(|e| SyntaxError::new(&e))
+    }
+}
+
+/// The message of a file without a key.
+const NOTHING: &str =
+    "there is no key in it; expected those of a scenario, for example law = \"h\" (docs/scenario.md)";
+
+/// Whether a file's text is without a key, as that of an empty file.
+fn states_nothing(text: &str, json: bool) -> bool {
+    match json {
+        true => serde_json::from_str(text).is_ok_and(|table: serde_json::Map<_, _>| table.is_empty()),
+        false => text.parse().is_ok_and(|table: toml::Table| table.is_empty()),
     }
 }
 

@@ -68,7 +68,7 @@ pub enum ParameterTextError {
         found: &'static str,
     },
     /// Neither a law nor parameters.
-    #[error("empty: neither `law` nor `parameters`")]
+    #[error("there is neither `law` nor `parameters` in it")]
     Empty,
     /// Another number of parameters than exported.
     #[error("count = {count}, but it has {found} parameters: it was cut or changed")]

@@ -4,6 +4,7 @@ use super::content::{Content, NONE, OrNone};
 use super::error::ScenarioError;
 use super::rider::LoadedRider;
 use super::setting::DRAWS;
+use super::speeds::{FASTEST_M_S, SpeedsError};
 use super::ticks::{LONGEST_S, whole_ticks};
 use super::{AssistKind, Preset, Scenario, cut_files, idle, law, parameter_file::ParameterFile, repeats};
 use crate::bicycle::Geometry;
@@ -38,9 +39,6 @@ pub struct Resolved {
     /// The same scenario with the contents of files in the places of their names: it can be run elsewhere.
     pub scenario: Scenario,
 }
-
-/// Largest speed at the start, forwards and backwards \[m/s\].
-const FASTEST_M_S: f64 = 30.0;
 
 /// Beginning of the names of the firmware's parameters that the ideal law has, too.
 const IDEAL_PARAMETERS: &str = "dead_band.";
@@ -98,9 +96,9 @@ impl Scenario {
         let sensor_delay_ticks = whole_ticks(self.sensor_delay_s, step_s, LONGEST_S)
             .map_err(|e| ScenarioError::value("sensor_delay_s", e))?;
         let conditions = self.conditions(&bicycle, assist, rider.as_ref(), (step_s, plant));
-        warnings.extend(idle::warnings(&self.plant, &conditions));
         let conditions = Conditions { schedule_speed, sensor_delay_ticks, ..conditions };
         conditions.check()?;
+        warnings.extend(idle::warnings(&self.plant, &conditions));
         let own_law = self.law.as_ref().map(|_| law::content(&law_name, &law));
         let scenario = self.complete(given, rider.as_ref(), own_law, file)?;
         Ok(Resolved { conditions, bicycle, rider, law, law_name, warnings, notes, scenario })
@@ -113,8 +111,10 @@ impl Scenario {
                 within(key, value, -most, most).map_err(|e| ScenarioError::value(&format!("start.{key}"), e))
             };
             if start.speed_m_s.is_nan() && !self.options.contains("start.speed_m_s") {
-                let reason = format!("must be given, from -{FASTEST_M_S} to {FASTEST_M_S} m/s");
-                return Err(ScenarioError::value("start.speed_m_s", reason));
+                return Err(ScenarioError::value(
+                    "start.speed_m_s",
+                    SpeedsError::Missing { least_m_s: -FASTEST_M_S },
+                ));
             }
             given("speed_m_s", start.speed_m_s, FASTEST_M_S)?;
             given("steer_rate_rad_s", start.steer_rate_rad_s, 100.0)?;
@@ -123,7 +123,7 @@ impl Scenario {
         self.search.resolve(self.is_ridden())?;
         if let Some(plane) = &self.plane {
             if plane.speed.is_nan() {
-                return Err(ScenarioError::value("plane.speed", "must be given, from 0 to 30 m/s"));
+                return Err(ScenarioError::value("plane.speed", SpeedsError::Missing { least_m_s: 0.0 }));
             }
             plane.check().map_err(|e| ScenarioError::value("plane", e))?;
         }

@@ -27,6 +27,12 @@ pub enum SpeedsError {
         /// Number of its speeds.
         count: f64,
     },
+    /// No speed.
+    #[error("must be given, from {least_m_s} to {FASTEST_M_S} m/s")]
+    Missing {
+        /// Smallest allowed speed \[m/s\].
+        least_m_s: f64,
+    },
     /// A speed outside its range.
     #[error("speed {speed_m_s} m/s is outside {least_m_s} to {FASTEST_M_S}")]
     Range {

@@ -39,7 +39,7 @@ pub enum SweepError {
     #[error("{} is neither empty nor the folder of a sweep", .0.display())]
     OtherContent(PathBuf),
     /// A folder with another sweep.
-    #[error("{} holds another sweep: {difference} differs ({PLAN}); choose another --out, or empty it", folder.display())]
+    #[error("{} holds another sweep: {difference} ({PLAN}); choose another --out, or empty it", folder.display())]
     OtherSweep {
         /// The folder.
         folder: PathBuf,

@@ -84,14 +84,14 @@ impl Plan {
         label(&self.axes, &self.values(i))
     }
 
-    /// The first part in which `other` differs; `None` if equal.
+    /// The first part in which `other` differs, as a clause; `None` if equal.
     pub fn difference(&self, other: &Plan) -> Option<&'static str> {
         let differences = [
-            (self.schema != other.schema || self.tool != other.tool, "the program"),
-            (self.options != other.options, "the options"),
-            (self.axes != other.axes, "the axes (--over)"),
-            (self.search != other.search, "the search"),
-            (self.cells != other.cells, "a file that it reads"),
+            (self.schema != other.schema || self.tool != other.tool, "the program differs"),
+            (self.options != other.options, "the options differ"),
+            (self.axes != other.axes, "the axes (--over) differ"),
+            (self.search != other.search, "the search differs"),
+            (self.cells != other.cells, "a file that it reads differs"),
         ];
         differences.into_iter().find_map(|(differs, what)| differs.then_some(what))
     }

@@ -49,6 +49,33 @@ fn wrong_parameter_files() {
     assert_rejected(&bench, "eigen --bicycle empty.toml", &["empty.toml", "`w` is missing"]);
 }
 
+/// Situation: a file of nothing, one of a remark, and such with the keys that are not values.
+/// Action: give it to each option that reads a file.
+/// Must hold: rejected with the file, and with what is expected; nothing of it is repeated.
+#[test]
+fn empty_files_are_rejected() {
+    let bench = Bench::new(PROGRAM);
+    let about = "source = 'x'\nlicence = 'y'\ncommand = 'z'\n";
+    for (option, text, expected) in [
+        ("--scenario", "", "expected those of a scenario"),
+        ("--scenario", "# nothing yet\n", "expected those of a scenario"),
+        ("--scenario", "{}\n", "expected those of a scenario"),
+        ("--actuator", "", "for example limit_nm = 12"),
+        ("--actuator", "source = 'x'\n", "for example limit_nm = 12"),
+        ("--sensor", "", "source"),
+        ("--sensor", about, "gyro, accel, steer, steer-rate, wheel, rider-torque, motor-report"),
+        ("--parameters", "", "neither `law` nor `parameters`"),
+        ("--rider", "", "missing field"),
+        ("--law", "", "speed_m_s"),
+        ("--bicycle", "", "`w` is missing"),
+    ] {
+        bench.write("empty", text);
+        let run = bench.run(&format!("ride --speed 4 {option} empty"));
+        run.rejected_naming(&["empty", expected]);
+        assert!(!run.stderr.contains("empty: empty"), "{}", run.stderr);
+    }
+}
+
 /// Situation: devices without an end, and a pipe.
 /// Action: use them where a text file or a recording is expected.
 /// Must hold: each device is rejected with its name and nothing written; the pipe is read.

@@ -250,3 +250,38 @@ fn faults_that_cannot_act_are_told() {
         }
     }
 }
+
+/// Situation: values that are checked after the options were read, given as options and in a file.
+/// Action: run.
+/// Must hold: each error begins with its option, or with file and key, and has the range.
+#[test]
+fn errors_name_the_option_or_the_key() {
+    let bench = Bench::new(PROGRAM);
+    for (line, begin) in [
+        ("basin --speeds 4 --max-rate 500", "--max-rate: max rate (rad/s) = 500 is outside 0.01 to 100"),
+        ("basin --speeds 4 --scan-step 50", "--scan-step: scan step (rad/s) = 50 is outside 0.001 to 30"),
+        ("basin --speeds 4 --tolerance 5", "--tolerance: tolerance (rad/s) = 5 is outside"),
+        (
+            "basin plane --speed 4 --max-steer-rate 900",
+            "--max-steer-rate: largest steer rate (rad/s) = 900 is",
+        ),
+        ("ride --speed 4 --time-limit 4000", "--time-limit: time limit (s) = 4000 is outside 0.001 to 3600"),
+        ("ride --speed 4 --recovered-below 7", "--recovered-below: recovered-below fraction = 7 is outside"),
+        ("ride --speed 4 --sensor gyro:noise=-1", "--sensor: gyro noise = -1 is outside 0 to 1000"),
+        ("ride --speed 4 --actuator scale=99", "--actuator: actuator scale = 99 is outside -10 to 10"),
+        ("ride --speed 4 --bicycle-set foo=1", "--bicycle-set `foo`: no such parameter; there are w, c, lam"),
+    ] {
+        let run = bench.run(line);
+        assert!(run.code == Some(1) && run.stderr.starts_with(&format!("error: {begin}")), "{run:?}");
+    }
+    for (text, begin) in [
+        ("search = { max_rate = 500 }", "search.max_rate: max rate (rad/s) = 500 is outside 0.01 to 100"),
+        ("time_limit_s = 4000", "time_limit_s: time limit (s) = 4000 is outside 0.001 to 3600"),
+        ("plant = { actuator = { scale = 99 } }", "plant.actuator: actuator scale = 99 is outside -10 to 10"),
+    ] {
+        bench.write("wrong.toml", format!("{text}\n"));
+        let run = bench.run("basin --speeds 4 --scenario wrong.toml");
+        let begin = format!("error: scenario wrong.toml: {begin}");
+        assert!(run.code == Some(1) && run.stderr.starts_with(&begin), "{run:?}");
+    }
+}

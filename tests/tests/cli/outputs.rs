@@ -137,7 +137,7 @@ fn a_full_disk_leaves_the_older_file() {
     run.rejected_naming(&["standard output", "large"]);
 }
 
-/// Situation: a folder that is removed while a result is computed for it; a full file system.
+/// Situation: a folder that is removed while a result is computed for it; one that takes no file; a full file system.
 /// Action: write the result.
 /// Must hold: the error names the file and the missing folder, or "No space left", with no file left.
 #[test]
@@ -150,6 +150,8 @@ fn a_lost_place_is_named() {
     for words in ["can't write ", "there/ride.json: there is no folder ", "/there"] {
         assert!(error.contains(words), "{words}: {error}");
     }
+    let run = bench.run("ride --speed 4 -q --csv /proc/ride.csv");
+    run.rejected_naming(&["can't write /proc/ride.csv: no file can be made in /proc"]);
     let Some(_disk) = SmallDisk::mounted(bench.path("disk"), 16 * 1024) else {
         eprintln!("skipped: no right to mount a small file system");
         return;

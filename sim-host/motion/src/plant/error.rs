@@ -22,3 +22,13 @@ pub enum PlantError {
         sensor: &'static str,
     },
 }
+
+impl PlantError {
+    /// The error, with the key of its value in a scenario.
+    pub(super) fn of(self, key: &'static str) -> Self {
+        match self {
+            Self::Range(error) => Self::Range(RangeError { key: Some(key), ..error }),
+            other => other,
+        }
+    }
+}

@@ -43,8 +43,8 @@ impl Plant {
     /// # Errors
     /// States the value and its range.
     pub fn check(&self) -> Result<(), PlantError> {
-        self.sensors.check()?;
-        self.actuator.check()
+        self.sensors.check().map_err(|error| error.of("plant.sensors"))?;
+        self.actuator.check().map_err(|error| error.of("plant.actuator"))
     }
 
     /// Whether sensors and motor are exact and without faults; friction and end-stop do not count.

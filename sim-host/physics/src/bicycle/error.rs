@@ -267,7 +267,7 @@ pub enum FormatError {
 #[non_exhaustive]
 pub enum VariationError {
     /// A key that is no parameter.
-    #[error("no parameter `{0}`; there are {keys}", keys = KEYS.join(", "))]
+    #[error("`{0}`: no such parameter; there are {keys}", keys = KEYS.join(", "))]
     Key(String),
     /// A parameter to which a rider's body contributes.
     #[error("{key}={value}: it combines frame and rider; change their files")]

@@ -41,6 +41,15 @@ pub enum ActuatorFileError {
         /// The parser's message.
         reason: String,
     },
+    /// The file has no key.
+    #[error(
+        "actuator file {name}: there is no value in it; expected one or more, for example limit_nm = 12 (docs/plant.md); \
+         the exact motor is none"
+    )]
+    Empty {
+        /// The file.
+        name: String,
+    },
     /// A value is wrong.
     #[error("actuator file {name}: {error}")]
     Value {
@@ -75,6 +84,9 @@ pub fn load(name: &str) -> Result<ActuatorConfig, ActuatorFileError> {
     };
     if table.remove("source").is_some_and(|source| !source.is_str()) {
         return Err(fail("source must be text".into()));
+    }
+    if table.is_empty() {
+        return Err(ActuatorFileError::Empty { name: name.into() });
     }
     let config = ActuatorConfig::deserialize(table).map_err(|e| fail(e.to_string()))?;
     config.check().map_err(|error| ActuatorFileError::Value { name: name.into(), error })?;

@@ -111,6 +111,15 @@ pub const fn table_of(sensor: Sensor) -> &'static str {
     }
 }
 
+/// The names of the tables that a file can have.
+fn tables() -> Vec<&'static str> {
+    let mut file = SensorFile::default();
+    let known = Sensor::ALL.into_iter().filter(|sensor| file.of_mut(*sensor).is_some());
+    let mut names: Vec<_> = known.map(table_of).collect();
+    names.dedup();
+    names
+}
+
 /// Sensor models that can't be loaded.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -147,6 +156,9 @@ pub enum SensorTextError {
     /// Not TOML, or a key is missing, unknown or of a wrong type: the parser's message.
     #[error("{0}")]
     Syntax(String),
+    /// No table of a sensor.
+    #[error("there is no sensor in it; expected a table of one or more of {}", tables().join(", "))]
+    Empty,
     /// A wrong number in a table.
     #[error("{table}: {error}")]
     Table {
@@ -208,6 +220,9 @@ impl SensorFile {
     pub fn parse(text: &str) -> Result<Self, SensorTextError> {
         let file: Self =
             toml::from_str(text).map_err(|e| SensorTextError::Syntax(e.to_string().trim().into()))?;
+        if file.tables().next().is_none() {
+            return Err(SensorTextError::Empty);
+        }
         for (sensor, numbers) in file.tables() {
             let wrong = |error| SensorTextError::Table { table: table_of(sensor), error };
             numbers.check(sensor).map_err(wrong)?;
