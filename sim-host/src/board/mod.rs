@@ -3,6 +3,7 @@
 pub mod broadcast;
 pub mod causes;
 pub mod client;
+pub mod counted;
 pub mod exception;
 pub mod fault;
 pub mod monitor;

@@ -1,5 +1,6 @@
 //! Counts of what was received from a board, whole, damaged or unknown.
 
+use super::counted::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -21,8 +22,8 @@ impl Reception {
     pub fn unread(&self) -> Option<String> {
         let Self { damaged, unknown, rest, .. } = *self;
         let parts = [
-            (damaged > 0).then(|| format!("{damaged} frames damaged")),
-            (unknown > 0).then(|| format!("{unknown} frames not understood")),
+            (damaged > 0).then(|| counted(damaged, "frame damaged", "frames damaged")),
+            (unknown > 0).then(|| counted(unknown, "frame not understood", "frames not understood")),
             (rest > 0).then(|| format!("it ends within a frame ({rest} bytes)")),
         ];
         let parts: Vec<String> = parts.into_iter().flatten().collect();

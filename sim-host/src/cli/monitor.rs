@@ -1,7 +1,7 @@
 //! `sim-host monitor`: live values of a board as a panel, lines, a table or a recording.
 
 use super::faults::no_recording;
-use super::monitor_files::{Mcap, Table, open};
+use super::monitor_files::{Files, both, open};
 use super::monitor_text::{line as text_line, panel, summary};
 use super::monitor_view::{Seen, View};
 use super::outputs::complain;
@@ -80,8 +80,7 @@ struct Session {
     client: Client,
     monitor: Monitor,
     view: View,
-    table: Option<Table>,
-    mcap: Option<Mcap>,
+    files: Files,
     /// Damaged frames before the first whole one: reception begins in the middle of a frame.
     damaged_before: u32,
     begin: Instant,
@@ -103,27 +102,23 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let board = if args.file.is_some() { None } else { Some(client.hello()?) };
     let title = board.as_ref().map_or("a recording".to_owned(), BoardName::label);
     let config = json!({"board": board});
-    let table = args.csv.as_deref().map(|path| Table::create(path, &config)).transpose()?;
-    let (mcap, live) = (args.mcap.as_deref(), args.file.is_none());
-    let mcap = mcap.map(|path| Mcap::create::<TelemetryRow>(path, "/board", &config, live)).transpose()?;
+    let (csv, mcap, live) = (args.csv.as_deref(), args.mcap.as_deref(), args.file.is_none());
+    let files = Files::create::<TelemetryRow>(csv, mcap, "/board", &config, live)?;
     let view = if quiet { View::None } else { View::new(title)? };
     let damaged_before = client.damaged();
     let mut session = Session {
         client,
         monitor: Monitor::default(),
         view,
-        table,
-        mcap,
+        files,
         damaged_before,
         begin: Instant::now(),
         length: args.length.map(Duration::from_secs_f64),
         reopen: Duration::from_secs_f64(args.reopen),
         rest: 0,
     };
-    let ended = session.receive();
-    let shown = session.end();
-    let ended = ended?;
-    shown?;
+    let received = session.receive();
+    let (ended, ()) = both(received, session.end())?;
     let reception = session.reception();
     match (&args.file, reception.unread()) {
         (Some(file), _) if reception.frames == 0 => Err(no_recording(file)),
@@ -195,7 +190,7 @@ impl Session {
                 self.view.say(&format!("no data for {} s", SILENCE.as_secs()))?;
             }
             received.iter().try_for_each(|received| self.take(received))?;
-            self.table.as_mut().map_or(Ok(()), Table::flush)?;
+            self.files.flush()?;
             let damaged = self.damaged();
             self.view.draw(|| panel(&self.monitor, damaged))?;
         }
@@ -243,8 +238,7 @@ impl Session {
     fn take(&mut self, received: &ReceivedMessage) -> Result<(), Failure> {
         match self.monitor.take(received) {
             News::Step(row) => {
-                self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
-                self.mcap = self.mcap.take().map(|mcap| mcap.write(row.t, &row)).transpose()?;
+                self.files.write(row.t, &row)?;
                 let (damaged, Some(step)) = (self.damaged(), &self.monitor.newest) else { return Ok(()) };
                 let Telemetry { command, driven, late, .. } = *step;
                 let seen = Seen { mode: command.mode, causes: command.causes, driven, late };
@@ -258,8 +252,7 @@ impl Session {
 
     /// Shows the summary and completes the files.
     fn end(&mut self) -> Result<(), Failure> {
-        self.table.as_mut().map_or(Ok(()), Table::flush)?;
-        self.mcap.take().map_or(Ok(()), Mcap::finish)?;
+        self.files.finish()?;
         self.view.say(&summary(&self.monitor, self.damaged()))
     }
 

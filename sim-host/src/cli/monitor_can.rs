@@ -1,12 +1,13 @@
 //! `sim-host monitor --can`: a board by its frames on a CAN bus, as they arrive or from a recording.
 
 use super::monitor::{Args, SILENCE};
-use super::monitor_files::{Mcap, Table, failed, open};
+use super::monitor_files::{Files, both, failed, open};
 use super::monitor_text::{cause_lines, cause_names, limit_names};
 use super::monitor_view::{Seen, View};
 use super::outputs::complain;
 use super::{Ended, Failure, UsageError, interrupt};
 use crate::board::broadcast::{Broadcast, BroadcastMonitor, BroadcastRow};
+use crate::board::counted::counted;
 use crate::board::socketcan::{ArrivedFrame, Bus};
 use crate::recording::frames::{Frames, Id};
 use crate::recording::{Remark, frames};
@@ -26,8 +27,7 @@ struct Session {
     view: View,
     /// The newest known mode and causes.
     seen: Seen,
-    table: Option<Table>,
-    mcap: Option<Mcap>,
+    files: Files,
 }
 
 pub(super) fn run(args: &Args, source: &str, quiet: bool) -> Result<Ended, Failure> {
@@ -39,8 +39,7 @@ pub(super) fn run(args: &Args, source: &str, quiet: bool) -> Result<Ended, Failu
         let bus = Bus::open(source)?;
         let mut session = Session::new(args, source, None, quiet)?;
         let followed = session.follow(args, source, &bus);
-        let ended = session.end(&[]);
-        return followed.and(ended);
+        return both(followed, session.end(&[])).map(|((), ended)| ended);
     }
     let idle = [("--record", args.record.is_some()), ("--for", args.length.is_some())];
     if let Some((option, _)) = idle.into_iter().find(|(_, given)| *given) {
@@ -51,15 +50,12 @@ pub(super) fn run(args: &Args, source: &str, quiet: bool) -> Result<Ended, Failu
     // One board: the first bus with its frames.
     let board = |id: Id| eleven_bits(id).is_some_and(|id| (STATE..=CAUSES).contains(&id));
     let Some(first) = frames.iter().find(|frame| board(frame.id)) else {
-        let (count, from, to) = (frames.len(), STATE, CAUSES);
-        return Err(format!(
-            "{source}: none of its {count} frames is of a board (identifiers {from:#x} to {to:#x})"
-        )
-        .into());
+        let (count, from, to) = (counted(frames.len() as u64, "frame", "frames"), STATE, CAUSES);
+        return Err(format!("{source}: {count}, none of a board (identifiers {from:#x} to {to:#x})").into());
     };
     let mut session = Session::new(args, source, Some(first.time_s), quiet)?;
-    session.read(&frames, first.bus)?;
-    session.end(&frames.remarks)
+    let read = session.read(&frames, first.bus);
+    both(read, session.end(&frames.remarks)).map(|((), ended)| ended)
 }
 
 /// The number of an identifier of 11 bits.
@@ -70,12 +66,11 @@ fn eleven_bits(id: Id) -> Option<u16> {
 impl Session {
     fn new(args: &Args, source: &str, start_s: Option<f64>, quiet: bool) -> Result<Self, Failure> {
         let config = json!({"can": {"source": source, "start_s": start_s}});
-        let table = args.csv.as_deref().map(|path| Table::create(path, &config)).transpose()?;
-        let (mcap, live) = (args.mcap.as_deref(), start_s.is_none());
-        let mcap = mcap.map(|path| Mcap::create::<BroadcastRow>(path, "/can", &config, live)).transpose()?;
+        let (csv, mcap, live) = (args.csv.as_deref(), args.mcap.as_deref(), start_s.is_none());
+        let files = Files::create::<BroadcastRow>(csv, mcap, "/can", &config, live)?;
         let view = if quiet { View::None } else { View::new(format!("CAN: {source}"))? };
         let seen = Seen { mode: Mode::Off, causes: Causes::NONE, driven: false, late: 0 };
-        Ok(Self { monitor: BroadcastMonitor::default(), errors: 0, remote: 0, view, seen, table, mcap })
+        Ok(Self { monitor: BroadcastMonitor::default(), errors: 0, remote: 0, view, seen, files })
     }
 
     /// Receives frames until the end.
@@ -96,7 +91,7 @@ impl Session {
                             if let Some((path, to)) = &mut record {
                                 let line = candump(arrived.time_s, interface, id, &data);
                                 let written = to.write_all(line.as_bytes());
-                                written.map_err(|error| failed(&path.display().to_string(), error))?;
+                                written.map_err(|error| failed(path, error))?;
                             }
                             self.take(arrived.time_s, eleven_bits(id), &data)?;
                         }
@@ -109,7 +104,7 @@ impl Session {
                 }
                 None => {}
             }
-            self.table.as_mut().map_or(Ok(()), Table::flush)?;
+            self.files.flush()?;
             self.draw()?;
         }
     }
@@ -132,9 +127,7 @@ impl Session {
 
     fn show(&mut self, broadcast: &Broadcast) -> Result<(), Failure> {
         let row = broadcast.row();
-        self.table.as_mut().map_or(Ok(()), |table| table.write(&row))?;
-        let time_s = self.monitor.start_s.unwrap_or_default() + row.t;
-        self.mcap = self.mcap.take().map(|mcap| mcap.write(time_s, &row)).transpose()?;
+        self.files.write(self.monitor.start_s.unwrap_or_default() + row.t, &row)?;
         if let Some(state) = broadcast.state {
             (self.seen.mode, self.seen.driven) = (state.mode, state.driven);
         }
@@ -155,20 +148,21 @@ impl Session {
 
     /// Completes the files and shows the summary; with data that was not decoded, says which.
     fn end(&mut self, remarks: &[Remark]) -> Result<Ended, Failure> {
-        self.monitor.end().iter().try_for_each(|broadcast| self.show(broadcast))?;
-        self.table.as_mut().map_or(Ok(()), Table::flush)?;
-        self.mcap.take().map_or(Ok(()), Mcap::finish)?;
+        let shown = self.monitor.end().iter().try_for_each(|broadcast| self.show(broadcast));
+        both(shown, self.files.finish())?;
         let t = self.monitor.newest.map_or(0.0, |newest| newest.t);
         let summary = format!("{}; {t:.3} s", self.counts());
         self.view.say(&summary)?;
         let counts = self.monitor.counts;
-        let unread: Vec<String> =
-            [(counts.wrong_length, "frames of a wrong length"), (counts.unknown, "frames not understood")]
-                .into_iter()
-                .filter(|(count, _)| *count > 0)
-                .map(|(count, what)| format!("{count} {what}"))
-                .chain(remarks.iter().map(ToString::to_string))
-                .collect();
+        let unread: Vec<String> = [
+            (counts.wrong_length, ["frame of a wrong length", "frames of a wrong length"]),
+            (counts.unknown, ["frame not understood", "frames not understood"]),
+        ]
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, [one, several])| counted(count, one, several))
+        .chain(remarks.iter().map(ToString::to_string))
+        .collect();
         if !unread.is_empty() {
             complain(&format!("warning: part of the data was not decoded: {}", unread.join(", ")));
         }
@@ -184,18 +178,19 @@ impl Session {
     fn counts(&self) -> String {
         let counts = self.monitor.counts;
         let further = [
-            (counts.wrong_length, "of a wrong length"),
-            (counts.unknown, "not understood"),
-            (counts.other, "of others"),
-            (self.errors, "error frames"),
-            (self.remote, "remote frames"),
-            (counts.stopped, "broadcasts with control stopped"),
-            (counts.time_backs, "times back"),
-            (counts.clock_jumps, "jumps of the clock ahead"),
+            (counts.wrong_length, ["of a wrong length"; 2]),
+            (counts.unknown, ["not understood"; 2]),
+            (counts.other, ["of others"; 2]),
+            (self.errors, ["error frame", "error frames"]),
+            (self.remote, ["remote frame", "remote frames"]),
+            (counts.stopped, ["broadcast with control stopped", "broadcasts with control stopped"]),
+            (counts.time_backs, ["time back", "times back"]),
+            (counts.clock_jumps, ["jump of the clock ahead", "jumps of the clock ahead"]),
         ];
-        let further = further.iter().filter(|(count, _)| *count > 0);
-        let further: String = further.map(|(count, what)| format!(", {count} {what}")).collect();
-        format!("{} frames, {} missing{further}", counts.frames, counts.missing)
+        let further = further.into_iter().filter(|(count, _)| *count > 0);
+        let further: String =
+            further.map(|(count, [one, several])| format!(", {}", counted(count, one, several))).collect();
+        format!("{}, {} missing{further}", counted(counts.frames, "frame", "frames"), counts.missing)
     }
 }
 

@@ -1,6 +1,7 @@
 //! A board's state as text, as the link reports it.
 
 use crate::board::causes::{limits, named};
+use crate::board::counted::counted;
 use crate::board::monitor::Monitor;
 use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Cause, Causes, Sample};
@@ -21,9 +22,11 @@ fn roll_rate(step: &Telemetry) -> String {
 
 fn counts(monitor: &Monitor, damaged: u32) -> String {
     let Monitor { frames, missing, unknown, restarts, clock_backs, .. } = monitor;
-    let back = if *clock_backs > 0 { format!(", clock back {clock_backs} times") } else { String::new() };
+    let back = counted(*clock_backs, "time", "times");
+    let back = if *clock_backs > 0 { format!(", clock back {back}") } else { String::new() };
     let unknown = if *unknown > 0 { format!("{unknown} not understood, ") } else { String::new() };
-    format!("{frames} frames, {missing} missing, {damaged} damaged, {unknown}{restarts} restarts{back}")
+    let (frames, restarts) = (counted(*frames, "frame", "frames"), counted(*restarts, "restart", "restarts"));
+    format!("{frames}, {missing} missing, {damaged} damaged, {unknown}{restarts}{back}")
 }
 
 /// Counts of received frames, in a line at the end.

@@ -350,7 +350,7 @@ fn ctrl_c_ends_a_monitor_with_complete_files() {
     assert!(kill.expect("sh runs").success());
     let run = Run::from(child.wait_with_output().expect("it ends"));
     assert_eq!(run.code, Some(130), "{run:?}");
-    assert!(run.stdout.contains("frames, 0 missing, 0 damaged"), "{}", run.stdout);
+    assert!(run.stdout.contains(", 0 missing, 0 damaged"), "{}", run.stdout);
     assert!(run.stderr.contains("interrupted: ending"), "{}", run.stderr);
     let table = bench.read("ride.csv");
     assert!(table.ends_with('\n') && table.lines().count() > 3);

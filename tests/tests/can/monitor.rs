@@ -131,12 +131,12 @@ fn what_is_missing_or_wrong_is_counted() {
     bench.write("odd.log", candump(first) + odd + &candump(rest));
     let run = bench.run("monitor --can odd.log --csv odd.csv");
     assert_eq!(run.code, Some(3), "{run:?}");
-    let counted = "143 frames, 7 missing, 1 of a wrong length, 1 not understood, 2 of others, 1 error frames, \
-                   1 remote frames; 0.980 s\n";
+    let counted = "143 frames, 7 missing, 1 of a wrong length, 1 not understood, 2 of others, 1 error frame, \
+                   1 remote frame; 0.980 s\n";
     assert!(run.stdout.ends_with(counted), "{}", run.stdout);
     assert_eq!(
         run.stderr,
-        "warning: part of the data was not decoded: 1 frames of a wrong length, 1 frames not understood, line 127: its \
+        "warning: part of the data was not decoded: 1 frame of a wrong length, 1 frame not understood, line 127: its \
          bytes are no hexadecimal digits; left out\n\
          warning: error frames: 1; left out\nwarning: remote frames, which have no data: 1; left out\n"
     );
@@ -166,7 +166,7 @@ fn a_stopped_controller_is_counted() {
     frames[60..].iter_mut().for_each(|(t, ..)| *t -= 0.3);
     bench.write("back.log", candump(&frames));
     let run = bench.run("monitor --can back.log");
-    assert!(run.stdout.contains("120 frames, 0 missing, 1 times back"), "{run:?}");
+    assert!(run.stdout.contains("120 frames, 0 missing, 1 time back"), "{run:?}");
 }
 
 /// Situation: a log whose logger gets its date after 20 of 40 broadcasts, a day ahead: between two broadcasts, and between the frames
@@ -184,7 +184,7 @@ fn a_jump_of_the_loggers_date_is_no_gap() {
         bench.write("date.log", candump(&frames));
         let run = bench.run("monitor --can date.log --csv date.csv");
         assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{at}: {run:?}");
-        let counted = "120 frames, 0 missing, 1 jumps of the clock ahead; 86400.780 s\n";
+        let counted = "120 frames, 0 missing, 1 jump of the clock ahead; 86400.780 s\n";
         assert!(run.stdout.ends_with(counted), "{at}: {}", run.stdout);
         let told = run.stdout.lines().filter(|line| line.contains("clock jumped ahead by 86400.0")).count();
         assert_eq!(told, 1, "{at}: {}", run.stdout);
@@ -241,7 +241,7 @@ fn frames_of_other_kinds_are_read_or_told() {
     );
     let run = bench.run("monitor --can kinds.log");
     assert!(
-        run.stdout.contains("30 frames, 0 missing, 1 of others, 1 error frames, 2 remote frames"),
+        run.stdout.contains("30 frames, 0 missing, 1 of others, 1 error frame, 2 remote frames"),
         "{run:?}"
     );
 }
@@ -274,6 +274,48 @@ fn a_full_disk_is_named() {
     assert_eq!(names.collect::<Vec<_>>(), ["ride.csv"]);
 }
 
+/// Situation: a small file system that is full after some rows, and a place beside it.
+/// Action: monitor a recording of CAN and one of the link with the table on the one and MCAP on the other, and both on the small one.
+/// Must hold: exit code 1; each file that can't be written is named; the table ends with a whole row; the MCAP file beside it is
+/// complete, with at least the rows of the table; of a full MCAP file nothing is left, and the table beside it has rows.
+#[test]
+fn a_file_is_completed_where_another_is_full() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("ride.log", candump(&ride(3000)));
+    let Some(_disk) = SmallDisk::mounted(bench.path("disk"), 64 * 1024) else {
+        eprintln!("skipped: no right to mount a small file system");
+        return;
+    };
+    let failed = |files: &str, named: &[&str]| {
+        let run = bench.run(&format!("monitor --can ride.log {files}"));
+        assert_eq!(run.code, Some(1), "{run:?}");
+        for name in named {
+            assert!(run.stderr.contains(&format!("can't write {name}: No space left")), "{}", run.stderr);
+        }
+    };
+    let whole_rows = |table: &str| {
+        let table = bench.read(table);
+        assert!(table.ends_with('\n'), "{}", &table[table.len() - 80..]);
+        let width = |row: &str| row.split(',').count();
+        let rows = rows(&table);
+        assert!(rows.len() > 50 && rows.iter().all(|row| width(row) == width(rows[0])));
+        rows.len() - 1
+    };
+    failed("--csv disk/ride.csv --mcap ride.mcap", &["disk/ride.csv"]);
+    let rows = whole_rows("disk/ride.csv");
+    let mcap = std::fs::read(bench.path("ride.mcap")).unwrap();
+    assert!(mcap.ends_with(b"\x89MCAP0\r\n"), "no end");
+    let messages = mcap.windows(15).filter(|bytes| *bytes == b"\"authority\":0.5").count();
+    assert!(messages >= rows, "{messages} {rows}");
+    std::fs::remove_file(bench.path("disk/ride.csv")).unwrap();
+    failed("--mcap disk/ride.mcap --csv ride.csv", &["disk/ride.mcap"]);
+    assert!(!bench.path("disk/ride.mcap").exists());
+    whole_rows("ride.csv");
+    let full = vec![0; 62 * 1024];
+    std::fs::write(bench.path("disk/full"), full).unwrap();
+    failed("--mcap disk/ride.mcap --csv disk/ride.csv", &["disk/ride.csv"]);
+}
+
 /// Situation: a log of Vector that was cut; one without a board's frames; a file that is no log; a name that is neither
 /// a file nor an interface; outputs that a recording cannot have; options without effect on a recording.
 /// Action: monitor. Must hold: the first is read up to its end and reported, exit code 3; the others are rejected, with
@@ -292,7 +334,7 @@ fn what_cannot_be_monitored_is_rejected() {
     bench.write("other.log", "(1.0) can0 7DF#0102\n");
     bench.run("monitor --can other.log --csv no.csv").rejected_naming(&[
         "other.log",
-        "1 frames",
+        "1 frame, none",
         "0x320 to 0x322",
     ]);
     bench.write("no.log", "nothing\n");
