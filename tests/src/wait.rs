@@ -1,5 +1,6 @@
 //! Waiting for another program: as long as a busy machine may need, and no longer than the program exists.
 
+use std::io::Read;
 use std::process::Child;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -33,10 +34,27 @@ pub fn used_s(process: u32) -> Option<f64> {
     Some(0.01 * hundredths)
 }
 
+/// As [`until`], for something that a program does.
+///
+/// # Panics
+/// If it ends before, with its standard error if that is piped.
+pub fn until_done<T>(child: &mut Child, what: &str, mut look: impl FnMut(&Child) -> Option<T>) -> T {
+    until(what, || {
+        let ended = child.try_wait().expect("a child of this process");
+        let found = look(child);
+        if let (None, Some(status)) = (&found, ended) {
+            let mut said = String::new();
+            let read = child.stderr.as_mut().map(|stderr| stderr.read_to_string(&mut said));
+            panic!("{what}: the program ended before: {status}; {read:?}: {said}");
+        }
+        found
+    })
+}
+
 /// Waits until a program has computed for this long.
 ///
 /// # Panics
-/// If it ended before, or does nothing.
-pub fn until_used(child: &Child, seconds: f64) {
-    until("processor time", || (used_s(child.id()).expect("the program runs") >= seconds).then_some(()));
+/// If it ends before, or does nothing.
+pub fn until_used(child: &mut Child, seconds: f64) {
+    until_done(child, "processor time", |child| (used_s(child.id())? >= seconds).then_some(()));
 }

@@ -7,7 +7,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use tests::cli::{Bench, Run};
-use tests::wait::until_used;
+use tests::wait::{until_done, until_used};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 /// Many short columns, together far longer than the test's timeout.
@@ -16,7 +16,7 @@ const MANY: &str = "basin --speeds 0:30:0.0005 --time-limit 0.2 --scan-step 10 -
 const LONG: &str = "basin --speeds 6 --time-limit 3600 --max-rate 0.5 --scan-step 0.01";
 
 /// Waits until the child has computed for a while.
-fn wait_for_work(child: &Child) {
+fn wait_for_work(child: &mut Child) {
     until_used(child, 0.3);
 }
 
@@ -43,14 +43,28 @@ fn spawn(bench: &Bench, line: &str) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program starts")
 }
 
+/// Situation: a program that ends with an error at once.
+/// Action: wait for its work, as the tests below do.
+/// Must hold: the wait fails soon, with the exit code and what the program said.
+#[test]
+fn a_wait_ends_with_its_program() {
+    let mut child = spawn(&Bench::new(PROGRAM), "basin --speeds 4 --bicycle missing");
+    let start = Instant::now();
+    let waited = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| wait_for_work(&mut child)));
+    assert!(start.elapsed() < Duration::from_secs(60), "{:?}", start.elapsed());
+    let said = waited.expect_err("no work").downcast::<String>().expect("a text");
+    assert!(said.contains("exit status: 1") && said.contains("error: unknown bicycle `missing`"), "{said}");
+}
+
 /// Situation: a long basin, some of it done.
 /// Action: Ctrl-C.
 /// Must hold: exit code 130 soon; all outputs written, completed results preserved, the others null.
 #[test]
 fn an_interrupted_basin_preserves_completed_speeds() {
     let bench = Bench::new(PROGRAM);
-    let child = spawn(&bench, &format!("{MANY} --json out.json --csv out.csv --svg out.svg --png out.png"));
-    wait_for_work(&child);
+    let mut child =
+        spawn(&bench, &format!("{MANY} --json out.json --csv out.csv --svg out.svg --png out.png"));
+    wait_for_work(&mut child);
     press_ctrl_c(&child);
     let run = Run::from(child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(130), "{run:?}");
@@ -84,8 +98,8 @@ fn an_interrupted_search_states_no_area() {
     let compare = "basin compare 'a=--time-limit 0.2' 'b=--time-limit 0.2' --speeds 0:30:0.0005 --scan-step 10 \
                    --tolerance 5 --json out.json";
     for (line, said) in [(plane, " of 10000 rays: no area"), (compare, "`a` is incomplete (")] {
-        let child = spawn(&bench, line);
-        wait_for_work(&child);
+        let mut child = spawn(&bench, line);
+        wait_for_work(&mut child);
         press_ctrl_c(&child);
         let run = Run::from(child.wait_with_output().unwrap());
         assert_eq!(run.code, Some(130), "{line}: {run:?}");
@@ -111,13 +125,9 @@ fn a_sigterm_preserves_completed_results() {
     let sweep = "sweep --over torque-limit=1:40/400 --law h --speeds 5 --threads 1 --out s";
     let basin = format!("{MANY} --csv out.csv");
     for (line, output) in [(&*basin, "speeds are done and kept"), (sweep, "cells are done and kept")] {
-        let child = spawn(&bench, line);
-        wait_for_work(&child);
-        let start = Instant::now();
-        while line == sweep && units() == 0 {
-            assert!(start.elapsed() < Duration::from_secs(60), "no cell is done");
-            std::thread::sleep(Duration::from_millis(5));
-        }
+        let mut child = spawn(&bench, line);
+        wait_for_work(&mut child);
+        until_done(&mut child, "a cell", |_| (line != sweep || units() > 0).then_some(()));
         send("TERM", &child);
         let run = Run::from(child.wait_with_output().unwrap());
         assert_eq!(run.code, Some(130), "{line}: {run:?}");
@@ -135,7 +145,7 @@ fn a_second_ctrl_c_quits_at_once_without_files() {
     let bench = Bench::new(PROGRAM);
     bench.write("old.json", "older result");
     let mut child = spawn(&bench, &format!("{LONG} --json old.json --csv new.csv"));
-    wait_for_work(&child);
+    wait_for_work(&mut child);
     let start = Instant::now();
     press_ctrl_c(&child);
     wait_for_word(child.stderr.as_mut().expect("piped"), "again to quit at once");
@@ -155,7 +165,7 @@ fn a_killed_run_leaves_no_file() {
     let bench = Bench::new(PROGRAM);
     for line in ["ride --speed 6 --time-limit 3600", LONG] {
         let mut child = spawn(&bench, &format!("{line} --json new.json --csv new.csv"));
-        wait_for_work(&child);
+        wait_for_work(&mut child);
         child.kill().unwrap();
         assert_eq!(child.wait().unwrap().signal(), Some(9), "{line}: over before it was killed");
         assert_eq!(bench.files(), [""; 0], "{line}");

@@ -13,7 +13,7 @@ use std::process::{Child, Stdio};
 use tests::cli::{Bench, repository};
 use tests::draws::runner;
 use tests::json_schema::violations;
-use tests::wait::until;
+use tests::wait::until_done;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 /// Four cells of two columns, coarse and short.
@@ -81,10 +81,7 @@ fn a_cell_has_the_values_of_basin() {
 /// Waits until a cell of the folder is done.
 fn wait_for_unit(child: &mut Child, units: &Path) {
     let is_done = |entry: std::fs::DirEntry| entry.path().extension().is_some_and(|x| x == "json");
-    until("a cell", || {
-        assert!(child.try_wait().unwrap().is_none(), "over before a cell is done");
-        std::fs::read_dir(units).ok()?.flatten().any(is_done).then_some(())
-    });
+    until_done(child, "a cell", |_| std::fs::read_dir(units).ok()?.flatten().any(is_done).then_some(()));
 }
 
 /// Situation: a sweep of sixty cells.

@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, SystemTime};
 use tests::cli::{Bench, Run, SmallDisk, repository};
 use tests::json_schema::violations;
-use tests::wait::until;
+use tests::wait::{until_done, until_used};
 
 use super::sweep::{files, must};
 
@@ -56,19 +56,18 @@ fn finished(bench: &Bench, folder: &str) -> BTreeMap<String, Vec<u8>> {
 /// A process stopped (SIGSTOP) while it computes a cell, at least one cell being stored.
 fn stopped(bench: &Bench, line: &str, folder: &str) -> Child {
     let mut child = spawn(bench, line);
-    until("a claim", || {
-        assert!(child.try_wait().expect("a child").is_none(), "over before it was stopped");
+    until_done(&mut child, "a claim", |child| {
         let begun = || !names(bench, &format!("{folder}/units")).is_empty();
         if !begun() {
             return None;
         }
-        send("STOP", &child);
+        send("STOP", child);
         let claims = names(bench, &format!("{folder}/claims"));
         let stored = names(bench, &format!("{folder}/units"));
         if claims.len() == 1 && !stored.contains(&claims[0]) {
             return Some(());
         }
-        send("CONT", &child);
+        send("CONT", child);
         None
     });
     child
@@ -230,9 +229,9 @@ fn the_status_tells_the_truth_about_claims() {
     {
         assert!(text.contains(words), "{words}: {text}");
     }
-    let child = spawn(&bench, &format!("{FORTY} --out s"));
+    let mut child = spawn(&bench, &format!("{FORTY} --out s"));
     let claims = || names(&bench, "s/claims");
-    until("all but the running cell", || {
+    until_done(&mut child, "all but the running cell", |_| {
         (names(&bench, "s/units").len() == 39 && claims().len() == 1).then_some(())
     });
     assert_eq!(claims(), [format!("{}.json", missing[0])]);
@@ -256,8 +255,8 @@ fn waiting_for_others_can_be_ended() {
     std::fs::remove_file(bench.path("s/units").join(&unit)).unwrap();
     let claim = foreign(id, Duration::ZERO);
     write_claim(&bench, "s", &claim);
-    let child = spawn(&bench, &format!("{FORTY} --out s"));
-    tests::wait::until_used(&child, 0.05);
+    let mut child = spawn(&bench, &format!("{FORTY} --out s"));
+    until_used(&mut child, 0.05);
     std::thread::sleep(Duration::from_millis(300));
     send("TERM", &child);
     let run = ended(child);
@@ -292,9 +291,11 @@ fn a_wait_for_others_is_told() {
     let told = |claim: &Claim| {
         write_claim(&bench, "s", claim);
         let file = std::fs::File::create(bench.path("told")).expect("a file");
-        let child = bench.command(&talking).stdout(Stdio::null()).stderr(file).spawn().expect("the program");
-        let line =
-            until("a message", || bench.read("told").split_once('\n').map(|(line, _)| line.to_owned()));
+        let mut child =
+            bench.command(&talking).stdout(Stdio::null()).stderr(file).spawn().expect("the program");
+        let line = until_done(&mut child, "a message", |_| {
+            bench.read("told").split_once('\n').map(|(line, _)| line.to_owned())
+        });
         send("TERM", &child);
         ended(child);
         line
@@ -315,8 +316,8 @@ fn a_wait_for_others_is_told() {
     let text = told(&ahead());
     assert!(text.contains(" s in the future, the machines' clocks differ"), "{text}");
     write_claim(&bench, "s", &fresh());
-    let child = spawn(&bench, &format!("{talking} -q"));
-    tests::wait::until_used(&child, 0.05);
+    let mut child = spawn(&bench, &format!("{talking} -q"));
+    until_used(&mut child, 0.05);
     std::thread::sleep(Duration::from_millis(2500));
     send("TERM", &child);
     assert!(!ended(child).stderr.contains("waiting"));
@@ -334,9 +335,9 @@ fn a_wait_for_others_is_told() {
 #[test]
 fn columns_of_an_interrupted_cell_are_kept() {
     let bench = Bench::new(PROGRAM);
-    let child = spawn(&bench, &format!("{ONE_CELL} --out s"));
-    until("a claim", || (!names(&bench, "s/claims").is_empty()).then_some(()));
-    tests::wait::until_used(&child, 0.3);
+    let mut child = spawn(&bench, &format!("{ONE_CELL} --out s"));
+    until_done(&mut child, "a claim", |_| (!names(&bench, "s/claims").is_empty()).then_some(()));
+    until_used(&mut child, 0.3);
     send("TERM", &child);
     let run = ended(child);
     assert_eq!(run.code, Some(130), "{run:?}");
@@ -399,8 +400,8 @@ fn a_cell_without_space_on_the_disk_is_no_free_cell() {
         eprintln!("skipped: no right to mount a small file system");
         return;
     };
-    let child = spawn(&bench, &format!("{ONE_CELL} --out disk/s"));
-    until("a claim", || (!names(&bench, "disk/s/claims").is_empty()).then_some(()));
+    let mut child = spawn(&bench, &format!("{ONE_CELL} --out disk/s"));
+    until_done(&mut child, "a claim", |_| (!names(&bench, "disk/s/claims").is_empty()).then_some(()));
     let full = std::fs::write(bench.path("disk/filler"), vec![0; 1 << 20]);
     assert_eq!(full.map_err(|e| e.kind()), Err(std::io::ErrorKind::StorageFull));
     let run = ended(child);

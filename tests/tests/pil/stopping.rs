@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use tests::cli::{Bench, Run, word};
-use tests::wait::{until, used_s};
+use tests::wait::{until, until_done, used_s};
 use xtask::image;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
@@ -17,10 +17,10 @@ fn spawn(bench: &Bench, line: &str) -> Child {
 }
 
 /// The emulator that a program started, once it has computed for a while.
-fn emulator(child: &Child) -> PathBuf {
+fn emulator(child: &mut Child) -> PathBuf {
     let tasks = PathBuf::from(format!("/proc/{}/task", child.id()));
-    until("an emulator at work", || {
-        let threads = std::fs::read_dir(&tasks).expect("the program runs").flatten();
+    until_done(child, "an emulator at work", |_| {
+        let threads = std::fs::read_dir(&tasks).ok()?.flatten();
         let children =
             threads.filter_map(|thread| std::fs::read_to_string(thread.path().join("children")).ok());
         let one = children.flat_map(|ids| ids.split_whitespace().next().map(str::to_owned)).next()?;
@@ -43,8 +43,8 @@ fn an_interrupted_basin_on_the_chip_preserves_completed_speeds() {
     }
     let bench = Bench::new(PROGRAM);
     let many = "pil basin --speeds 3:9:0.001 --time-limit 0.05 --scan-step 10 --max-rate 10 --tolerance 10";
-    let child = spawn(&bench, &format!("{many} --threads 1 --json out.json"));
-    let emulator = emulator(&child);
+    let mut child = spawn(&bench, &format!("{many} --threads 1 --json out.json"));
+    let emulator = emulator(&mut child);
     signal("INT", &child);
     let run = Run::from(child.wait_with_output().unwrap());
     assert_eq!(run.code, Some(130), "{run:?}");
@@ -65,7 +65,7 @@ fn an_emulator_ends_with_its_program() {
         return;
     }
     let mut child = spawn(&Bench::new(PROGRAM), "pil --speed 4 --time-limit 3600");
-    let emulator = emulator(&child);
+    let emulator = emulator(&mut child);
     signal("KILL", &child);
     child.wait().unwrap();
     until("the emulator's end", || (!emulator.exists()).then_some(()));
