@@ -102,7 +102,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let pool = args.threads.pool()?;
     let to_compute = requested.iter().filter(|a| matches!(a, RequestedCase::Compute(..))).count();
     let bar = progress(outputs.shows_progress(), "basin", to_compute * search.speeds.len(), "columns");
-    let (mut cases, mut stable, mut complete) = (Vec::new(), None, true);
+    let (mut cases, mut missing, mut stable, mut complete) = (Vec::new(), Vec::new(), None, true);
     for one in requested {
         let case = match one {
             RequestedCase::Done(case, _) => case,
@@ -125,8 +125,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             }
         };
         complete &= !interrupt::stopped();
-        if !case.basin.columns.is_empty() {
-            cases.push(case);
+        match case.basin.columns.is_empty() {
+            true => missing.push(case.label),
+            false => cases.push(case),
         }
     }
     bar.finish_and_clear();
@@ -134,7 +135,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         complain("interrupted: no speed is done, nothing is written");
         return Ok(Ended::Interrupted);
     }
-    let document = CompareDocument::new(resolved, &cases, complete);
+    let document = CompareDocument::new(resolved, &cases, complete, missing);
     let series: Vec<(&str, &Basin)> = cases.iter().map(|c| (c.label.as_str(), &c.basin)).collect();
     let title = if complete { "Basins of attraction" } else { "Basins of attraction, interrupted" };
     let figure = BasinFigure {
@@ -280,6 +281,9 @@ fn summary(document: &CompareDocument) -> String {
     for case in cases.iter().filter(|case| !case.complete) {
         let (label, done) = (&case.label, case.speeds.len());
         let _ = writeln!(text, "`{label}` is incomplete ({done} speeds): no area and no mean height");
+    }
+    for label in &document.missing {
+        let _ = writeln!(text, "`{label}` is missing: none of its speeds is done");
     }
     if one_speed {
         text += "one speed: no area; compared by height\n";

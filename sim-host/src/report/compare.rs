@@ -18,6 +18,8 @@ pub struct CompareDocument {
     pub search: ResolvedSearch,
     /// False after an interruption: cases are then missing or cover fewer speeds.
     pub complete: bool,
+    /// Names of the cases without a finished speed, which are missing from `cases` after an interruption.
+    pub missing: Vec<String>,
     /// The cases, in the requested order.
     pub cases: Vec<CaseEntry>,
     /// Root-mean-square distance of each two outlines over their common speeds \[rad/s\]; null without any.
@@ -88,8 +90,8 @@ impl Case {
 }
 
 impl CompareDocument {
-    /// The document of some cases.
-    pub fn new(search: ResolvedSearch, cases: &[Case], complete: bool) -> Self {
+    /// The document of some cases; `missing` are the names of those without a finished speed.
+    pub fn new(search: ResolvedSearch, cases: &[Case], complete: bool, missing: Vec<String>) -> Self {
         let first = cases.first().and_then(Case::area).unwrap_or(0.0);
         let first_mean = cases.first().and_then(Case::mean_height).unwrap_or(0.0);
         let first_capped = cases.first().is_some_and(|c| c.basin.capped());
@@ -120,6 +122,7 @@ impl CompareDocument {
             tool: Tool::this(),
             search,
             complete,
+            missing,
             cases: cases.iter().map(entry).collect(),
             rmse: distances(|r| r.mean),
             rmse_as_printed: distances(|r| r.as_printed),

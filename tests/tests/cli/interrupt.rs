@@ -90,7 +90,8 @@ fn an_interrupted_basin_preserves_completed_speeds() {
 
 /// Situation: a long plane, and a comparison of two long basins; part of each is done.
 /// Action: Ctrl-C.
-/// Must hold: the text says how much is searched, and states no area, mean or extent of that part.
+/// Must hold: the text says how much is searched and names the case that was not begun, and states no area, mean or extent of that
+/// part.
 #[test]
 fn an_interrupted_search_states_no_area() {
     let bench = Bench::new(PROGRAM);
@@ -105,9 +106,12 @@ fn an_interrupted_search_states_no_area() {
         assert_eq!(run.code, Some(130), "{line}: {run:?}");
         assert!(run.stdout.contains(said), "{line}: {}", run.stdout);
         assert!(!run.stdout.contains("reaches"), "{line}: {}", run.stdout);
+        let begun = !run.stdout.contains("`b` is missing: none of its speeds is done\n");
+        assert_eq!(begun, line == plane, "{line}: {}", run.stdout);
     }
     let document: Value = serde_json::from_str(&bench.read("out.json")).unwrap();
     let case = &document["cases"][0];
+    assert_eq!(document["missing"], serde_json::json!(["b"]));
     assert_eq!(case["complete"], false);
     for measure in ["area", "mean_height", "relative_area", "relative_height"] {
         assert!(case[measure].is_null(), "{measure}: {}", case[measure]);
