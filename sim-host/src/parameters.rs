@@ -54,7 +54,7 @@ pub fn departing(config: &Config, from: &Config) -> Vec<(String, String)> {
 #[non_exhaustive]
 pub enum SetError {
     /// No parameter has this name.
-    #[error("no parameter {key}; nearest are {}; `sim-host param list --virtual-board` shows all", near.join(", "))]
+    #[error("no parameter {key}; nearest are {}; `sim-host param list --defaults` shows all", near.join(", "))]
     Unknown {
         /// As given.
         key: String,

@@ -3,7 +3,8 @@
 use super::client::{Client, ClientError};
 use super::parameter::{Parameter, ValueError, law_points};
 use crate::parameters::Value;
-use control::Law;
+use control::{Config, Law};
+use link::page::{PAGE_BYTES, fill};
 use std::collections::BTreeMap;
 
 /// A parameter's value, or the law.
@@ -61,6 +62,20 @@ impl Settings {
     /// See [`ClientError`].
     pub fn read(client: &mut Client) -> Result<Self, ClientError> {
         Ok(Self { law: client.law()?, parameters: client.list()? })
+    }
+
+    /// Those of the flashed configuration, as a board without stored ones has them.
+    pub fn flashed() -> Self {
+        let config = Config::product();
+        let mut parameters: Vec<Parameter> = Vec::new();
+        loop {
+            let mut room = [0; PAGE_BYTES];
+            let page = fill(&config, &config, parameters.len() as u16, &mut room);
+            parameters.extend(page.entries().map(Parameter::from));
+            if page.count == 0 || parameters.len() >= usize::from(page.total) {
+                return Self { law: config.law, parameters };
+            }
+        }
     }
 
     /// The parameters without those of the law.

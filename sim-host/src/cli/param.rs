@@ -4,6 +4,7 @@ use super::outputs::{complain, print, write_json};
 use super::parameter_file;
 use super::port_args::{PortArgs, board};
 use super::{Ended, Failure};
+use crate::board::BoardName;
 use crate::board::client::Client;
 use crate::board::parameter::{Parameter, law_points};
 use crate::board::settings::{Setting, Settings};
@@ -26,7 +27,8 @@ Examples:
 const LIST_HELP: &str = "\
 Examples:
   sim-host param list --port /dev/ttyACM0
-  sim-host param list taper --port /dev/ttyACM0 --json";
+  sim-host param list taper --port /dev/ttyACM0 --json
+  sim-host param list limits --defaults";
 
 const GET_HELP: &str = "\
 Examples:
@@ -52,7 +54,7 @@ Example:
 #[derive(clap::Subcommand)]
 pub(super) enum Command {
     /// The board's parameters: value, unit, allowed values, and the default if it differs
-    #[command(group = board(), after_help = LIST_HELP)]
+    #[command(group = board().arg("defaults"), after_help = LIST_HELP)]
     List {
         /// Only parameters with this text in their name
         #[arg(default_value = "")]
@@ -60,6 +62,9 @@ pub(super) enum Command {
         /// Write JSON to FILE, or to standard output (also -)
         #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "-")]
         json: Option<PathBuf>,
+        /// The parameters of the flashed configuration, without a board
+        #[arg(long, conflicts_with = "baud")]
+        defaults: bool,
         #[command(flatten)]
         port: PortArgs,
     },
@@ -115,7 +120,9 @@ pub(super) enum Command {
 
 pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     match command {
-        Command::List { filter, json, port } => list(filter, json.as_ref(), port)?,
+        Command::List { filter, json, defaults, port } => {
+            list(filter, json.as_ref(), (!defaults).then_some(port))?;
+        }
         Command::Get { key, port } => get(key, port)?,
         Command::Set { key, value, port } => set(key, value, port)?,
         Command::Store { port } => {
@@ -132,18 +139,25 @@ pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-fn list(filter: &str, json: Option<&PathBuf>, port: &PortArgs) -> Result<(), Failure> {
+/// Lists the parameters of the board on `port`, or of the flashed configuration.
+fn list(filter: &str, json: Option<&PathBuf>, port: Option<&PortArgs>) -> Result<(), Failure> {
     let json = json.map(|path| Output::create(path)).transpose()?;
-    let (mut client, board) = port.connect()?;
-    let settings = Settings::read(&mut client)?;
+    let (board, settings) = match port {
+        Some(port) => {
+            let (mut client, board) = port.connect()?;
+            (Some(board), Settings::read(&mut client)?)
+        }
+        None => (None, Settings::flashed()),
+    };
     let listed: Vec<&Parameter> = settings.parameters.iter().filter(|one| one.key.contains(filter)).collect();
     if listed.is_empty() {
-        return Err(format!("no parameter of the board has `{filter}` in its name").into());
+        return Err(format!("no parameter has `{filter}` in its name").into());
     }
     if let Some(output) = json {
         return write_json(&output, &ParametersDocument::new(board, &settings, &listed));
     }
-    let mut text = format!("# {}\n", board.label());
+    let label = board.as_ref().map_or("flashed configuration".into(), BoardName::label);
+    let mut text = format!("# {label}\n");
     for one in listed {
         text += &line(&settings, one);
     }

@@ -19,8 +19,8 @@ pub struct ParametersDocument {
     pub schema: u32,
     /// The program.
     pub tool: Tool,
-    /// The board.
-    pub board: BoardName,
+    /// The board; null for the flashed configuration (`--defaults`).
+    pub board: Option<BoardName>,
     /// Its law.
     pub law: ResolvedLaw,
     /// Its parameters, in its order.
@@ -29,7 +29,7 @@ pub struct ParametersDocument {
 
 impl ParametersDocument {
     /// The document of `board` with the given `parameters` only.
-    pub fn new(board: BoardName, settings: &Settings, parameters: &[&Parameter]) -> Self {
+    pub fn new(board: Option<BoardName>, settings: &Settings, parameters: &[&Parameter]) -> Self {
         Self {
             schema: SCHEMA,
             tool: Tool::this(),

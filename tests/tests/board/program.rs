@@ -64,6 +64,31 @@ fn a_parameter_is_read_set_and_stored() {
     assert_eq!(lock(&board).config, Config::product());
 }
 
+/// Situation: a board with the flashed configuration, and no board.
+/// Action: list the parameters of both, all and some, as text and as a document.
+/// Must hold: the same lines after the first, which names the board or the configuration; the same document except the board, which
+/// is null, and which fits the schema.
+#[test]
+fn the_flashed_parameters_are_listed_without_a_board() {
+    let (bench, board) = (Bench::new(PROGRAM), shared(LinkBoard::default()));
+    let port = Port::quiet(&board);
+    let [of_board, defaults] = [format!("--port {}", port.name), "--defaults".into()];
+    for filter in ["", "limits"] {
+        let lines = |from: &str| {
+            let text = done(&bench.run(&format!("param list {from} {filter}"))).to_owned();
+            text.split_once('\n').map(|(first, rest)| (first.to_owned(), rest.to_owned())).expect("lines")
+        };
+        assert_eq!(lines(&of_board).1, lines(&defaults).1);
+        assert_eq!(lines(&defaults).0, "# flashed configuration");
+    }
+    let [mut of_board, document] = [of_board, defaults].map(|from| bench.json(&format!("param list {from}")));
+    assert!(of_board["board"].take().is_object());
+    assert_eq!(of_board, document);
+    assert_eq!(violations(&schema("param-list"), &document), [""; 0]);
+    bench.run("param list --defaults nonsense").rejected_naming(&["`nonsense`"]);
+    assert_eq!(bench.run("param list --defaults --qemu").code, Some(2));
+}
+
 /// Situation: an unknown key, invalid values, a board that is engaged, no board, no such port.
 /// Action: run.
 /// Must hold: exit code 1 and the reason, with key, value and allowed range; usage is 2; nothing set.
