@@ -3,7 +3,7 @@
 use crate::paths::target_dir;
 pub use crate::paths::{TARGET, cargo_home, path, root};
 use crate::process::{Outcome, capture, must};
-use crate::{Result, setup};
+use crate::{Result, probe, setup};
 use std::ffi::{OsStr, OsString};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -106,10 +106,11 @@ pub fn ready() -> bool {
 /// log.
 ///
 /// # Errors
-/// The image does not exist, or cargo or the runner failed.
+/// The image does not exist, probe-rs is missing, or cargo or the runner failed.
 pub fn flash(name: &str) -> Result<()> {
     let known = IMAGES.iter().find(|image| image.name == name && image.board != "board-qemu");
     let image = known.ok_or_else(|| format!("no image for a board is called {name:?}"))?;
+    probe::ready()?;
     must(cargo("run", "firmware", image.board).args(["--bin", image.name]), Duration::MAX)
 }
 

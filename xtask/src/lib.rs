@@ -14,6 +14,7 @@ pub mod instructions;
 pub mod mutants;
 pub mod paths;
 pub mod peak;
+pub mod probe;
 pub mod process;
 pub mod progress;
 pub mod python;

@@ -1,5 +1,6 @@
 //! Flight cards: a board and its images are named wherever they must be.
 
+use std::process::Command;
 use toml::{Table, Value};
 use xtask::image::{IMAGES, boards, root};
 
@@ -65,4 +66,16 @@ fn every_image_is_documented_and_each_of_a_board_has_an_alias() {
 fn names(folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(root().join(folder)).unwrap();
     entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+}
+
+/// Situation: no probe-rs on the path.
+/// Action: flash a board's image.
+/// Must hold: nothing is built; one line says what is missing and how to install it.
+#[test]
+fn a_missing_probe_is_told_with_its_installation() {
+    let mut flash = Command::new(env!("CARGO_BIN_EXE_xtask"));
+    let output = flash.args(["flash", "board-vesc6"]).env("PATH", "").output().expect("xtask runs");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && said.trim().lines().count() == 1, "{said}");
+    assert!(said.contains("probe-rs") && said.contains("cargo install probe-rs-tools --locked"), "{said}");
 }
