@@ -16,17 +16,21 @@ pub(super) fn install() {
 pub(super) fn install_saying(what: &'static str) {
     INSTALLED.get_or_init(|| {
         // Without a handler the signal ends the program at once, which only loses results.
-        let _ = ctrlc::set_handler(move || interrupted(what));
-        #[cfg(unix)]
-        let _ = on_termination(what);
+        let _ = handle(what);
     });
 }
 
-/// `ctrlc` would handle SIGHUP like SIGTERM, and a run under `nohup` would end with its terminal.
+/// Not SIGHUP: a run under `nohup` would end with its terminal.
 #[cfg(unix)]
-fn on_termination(what: &'static str) -> std::io::Result<()> {
-    let mut signals = signal_hook::iterator::Signals::new([signal_hook::consts::SIGTERM])?;
+fn handle(what: &'static str) -> std::io::Result<()> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM])?;
     std::thread::Builder::new().spawn(move || signals.forever().for_each(|_| interrupted(what))).map(drop)
+}
+
+#[cfg(not(unix))]
+fn handle(what: &'static str) -> Result<(), ctrlc::Error> {
+    ctrlc::set_handler(move || interrupted(what))
 }
 
 fn interrupted(what: &str) {

@@ -4,8 +4,7 @@ use std::process::Command;
 use tests::cli::repository;
 
 /// Crates of the terminal and the command line.
-const TERMINAL: [&str; 7] =
-    ["clap", "console", "ctrlc", "indicatif", "shlex", "signal-hook", "terminal_size"];
+const TERMINAL: [&str; 6] = ["clap", "console", "indicatif", "shlex", "signal-hook", "terminal_size"];
 
 /// Names of the crates that `sim-host` needs, with these arguments of `cargo tree`.
 fn dependencies(arguments: &[&str]) -> Vec<String> {
