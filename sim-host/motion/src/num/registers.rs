@@ -1,6 +1,8 @@
 //! Vector registers: the arithmetic of several numbers in one instruction.
 #![allow(unsafe_code)]
 
+use std::arch::x86_64::*;
+
 /// Numbers in vector registers. Every operation rounds each number as that of an `f64` does.
 ///
 /// The functions must be called only on a processor that has the instructions, and are fast only in a function that is compiled for
@@ -48,7 +50,7 @@ union Bits<R: Copy, const N: usize> {
 /// Two registers: enough independent operations to hide part of the latencies.
 macro_rules! two_registers {
     (
-        $name:ident: $number:ident, $integer:ident, $constant:ident, $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident,
+        $name:ident: $number:ident, $constant:ident, $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident,
         $bits:ident $of_bits:ident $integers:ident $minus:ident $and:ident $and_not:ident $or:ident $xor:ident $left:ident
     ) => {
         #[derive(Clone, Copy)]
@@ -109,21 +111,13 @@ macro_rules! two_registers {
     };
 }
 
-#[cfg(target_arch = "x86_64")]
-mod x86 {
-    use super::Registers;
-    use std::arch::x86_64::*;
-
-    two_registers! {
-        Avx2: __m256d, __m256i, _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
-        _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
-        _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
-    }
-    two_registers! {
-        Avx512: __m512d, __m512i, _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
-        _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_andnot_si512
-        _mm512_or_si512 _mm512_xor_si512 _mm512_slli_epi64
-    }
+two_registers! {
+    Avx2: __m256d, _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
+    _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
+    _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
 }
-#[cfg(target_arch = "x86_64")]
-pub(in crate::num) use x86::{Avx2, Avx512};
+two_registers! {
+    Avx512: __m512d, _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
+    _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_andnot_si512
+    _mm512_or_si512 _mm512_xor_si512 _mm512_slli_epi64
+}

@@ -7,13 +7,8 @@
 use super::plain::{narrow, plain};
 use super::scan::{Border, Edge, SECTIONS, column, edges, fell, rates};
 use super::{Column, ScanPoint, Search, Work};
-use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides, side_by_side};
+use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides};
 use std::convert::Infallible;
-
-/// Number of lines of disturbances searched together: their exact rides, two or more for each line, fill the lanes.
-pub(super) fn together() -> usize {
-    side_by_side()
-}
 
 /// Distance from a border up to which the scan's rides are ridden again in finer steps, in tolerances: there a ride is most
 /// sensitive.

@@ -4,7 +4,7 @@ use super::plain::{explored, plain, ridden};
 use super::{Basin, Column, fast};
 use crate::bicycle::uncertain::DrawError;
 use crate::range::{RangeError, within_key};
-use crate::ride::{Conditions, ConditionsError, Quick, RemoteError, Ride, Start};
+use crate::ride::{Conditions, ConditionsError, Quick, RemoteError, Ride, Start, side_by_side};
 use crate::rider::ScheduleError;
 use rayon::prelude::*;
 
@@ -176,9 +176,10 @@ pub(super) fn columns(
     speeds.par_chunks(together).flat_map_iter(explored).collect()
 }
 
-/// Number of lines of disturbances to search together.
+/// Number of lines of disturbances to search together: by a fast search as many as rides are simulated side by side, so that the
+/// exact rides, two or more for each line, fill the lanes.
 pub(super) fn together(conditions: &Conditions, search: &Search) -> usize {
-    search.quick(conditions).map_or(1, |_| fast::together())
+    search.quick(conditions).map_or(1, |_| side_by_side())
 }
 
 /// As [`basin`], with exact rides only, simulated by `rides`, which returns them in the order of the starts.
