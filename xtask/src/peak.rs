@@ -30,7 +30,7 @@ pub fn table() -> Result<String> {
     let rows = [
         ("peak, products and sums in turn", peak),
         ("peak, fused products and sums", rate("fused", "operations_per_s")?),
-        ("right-hand sides of eight rides", of_sides("right_hand_side")?),
+        ("right-hand sides, as many side by side as rides", of_sides("right_hand_side")?),
         ("small basin, of its right-hand sides alone", of_sides("basin")?),
     ];
     let row = |(name, rate): (&str, f64)| {

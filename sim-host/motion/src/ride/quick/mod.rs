@@ -44,9 +44,9 @@ const NEAR: f64 = 0.25;
 const SENSITIVE_S: f64 = 0.3;
 /// These steps, relative to the usual ones.
 const SHORTER: f64 = 0.5;
-/// Fine steps, relative to the usual ones.
-const FINE: f64 = 0.25;
-/// The same of steps over several control periods.
+/// Largest of fine steps, relative to the time scale of the motion.
+const LARGEST_FINE: f64 = 0.025;
+/// Fine steps over several control periods, relative to the usual ones.
 const FINE_PERIODS: f64 = 0.5;
 /// With a rider, the cosine of roll down to which the step shortens with it: nearer to the ground mostly the yaw rate grows,
 /// which is counted already. Without a rider more falls bounce there, and their times need the shorter steps.
@@ -121,7 +121,7 @@ impl<'a> Quick<'a> {
         let sampled = self.source.sampled().is_some();
         let longest_s = if sampled { FINE_PERIODS * self.longest_s } else { self.longest_s };
         let extrapolated = FINE_PERIODS * self.extrapolated;
-        Self { largest: FINE * self.largest, longest_s, extrapolated, again: false, ..self.clone() }
+        Self { largest: LARGEST_FINE, longest_s, extrapolated, again: false, ..self.clone() }
     }
 }
 
