@@ -209,6 +209,16 @@ proptest! {
         // f and g have terms up to about 450 that cancel.
         prop_assert!((single - double).abs() < 1e-4 * (1.0 + double.abs()), "{single} {double}");
     }
+
+    /// Situation: any law and speed.
+    /// Action: evaluate the law as one formula, for several rides at once.
+    /// Must hold: the bits of the gain, or no formula; h, f, g and no law have one, and no law that is zero from a speed on.
+    #[test]
+    fn a_formula_is_the_gain(law in prop_oneof![Just(Law::None), any_law()], speed in -3.0..30.0) {
+        let one_formula = matches!(law, Law::None | Law::H { cut: false } | Law::F | Law::G);
+        let expected = one_formula.then(|| f64::to_bits(law.gain(speed)));
+        prop_assert_eq!(law.formula(speed).map(f64::to_bits), expected);
+    }
 }
 
 /// Situation: the published formulas at several speeds.

@@ -176,6 +176,7 @@ fn rides_of_any(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
     lanes::run::<ANY_LANES>(conditions, starts, None, &mut Backend::Local)
 }
 
+/// One lane: not compiled a second time.
 #[cfg(not(target_arch = "aarch64"))]
 fn rides_of_any(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
     in_turn(conditions, starts, None, &mut Backend::Local)

@@ -138,8 +138,8 @@ impl Search {
 }
 
 /// Computes the basin at every speed, on all cores of the current rayon pool. `finished` is called after each
-/// column, `stop` is checked before each or, in a fast search, before as many as are ridden together or fewer. The result does not depend on the
-/// number of threads.
+/// column, `stop` is checked before each or, in a fast search, before as many as are searched together. The result
+/// does not depend on the number of threads.
 ///
 /// # Errors
 /// The search or the conditions fail their checks.
