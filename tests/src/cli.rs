@@ -62,7 +62,7 @@ impl Bench {
         command
     }
 
-    /// A line for `sh`, in which `$0` is the program.
+    /// A line for `sh`, in which `"$0"` is the program; quoted, as its folder can have blanks.
     pub fn shell(&self, line: &str) -> Run {
         let mut command = Command::new("sh");
         command.args(["-c", line, self.program]).current_dir(self.folder.path()).stdin(Stdio::null());

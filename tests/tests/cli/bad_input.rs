@@ -98,7 +98,7 @@ fn devices_are_no_files() {
         assert_rejected(&bench, line, &["/dev/full", "is a device, not a file"]);
     }
     let bicycle = word(&repository("data/bicycles/example.toml"));
-    let run = bench.shell(&format!("cat {bicycle} | $0 eigen --speeds 4 --bicycle /dev/stdin"));
+    let run = bench.shell(&format!("cat {bicycle} | \"$0\" eigen --speeds 4 --bicycle /dev/stdin"));
     assert_eq!(run.code, Some(0), "{run:?}");
 }
 
