@@ -1,6 +1,7 @@
 //! Flight cards: the dependencies between crates and between top modules, their figure and their tables.
 
 use std::collections::BTreeSet;
+use std::process::Command;
 use xtask::architecture::check::{self, Edge, Found};
 use xtask::architecture::graph::{Graph, parse};
 use xtask::architecture::imports::{first_names, paths, re_exports};
@@ -15,6 +16,44 @@ use xtask::image::root;
 fn sources_have_the_declared_dependencies() {
     let lines = differences(root(), &declared(root()).unwrap()).unwrap();
     assert!(lines.is_empty(), "compare with docs/architecture.toml:\n{}", lines.join("\n"));
+}
+
+/// Situation: the files in version control, if this is a clone.
+/// Action: list those at the top level, and the largest.
+/// Must hold: only the known files are at the top level: no package or result that a command left there. None has more than
+/// 1 MB, but there are some of 100 kB.
+#[test]
+fn nothing_else_is_in_version_control() {
+    let listed =
+        Command::new("git").args(["ls-tree", "-r", "-l", "--full-tree", "HEAD"]).current_dir(root()).output();
+    let Some(listed) = listed.ok().filter(|listed| listed.status.success()) else {
+        println!("skipped: not a clone, or no git");
+        return;
+    };
+    let listed = String::from_utf8(listed.stdout).unwrap();
+    let files: Vec<(u64, &str)> = listed
+        .lines()
+        .map(|line| {
+            let (of, path) = line.split_once('\t').unwrap();
+            (of.split_whitespace().last().unwrap().parse().unwrap(), path)
+        })
+        .collect();
+    let top: Vec<&str> = files.iter().map(|(_, path)| *path).filter(|path| !path.contains('/')).collect();
+    let known = [
+        ".gitignore",
+        "CHANGELOG.md",
+        "CONTRIBUTING.md",
+        "Cargo.lock",
+        "Cargo.toml",
+        "LICENSE-APACHE",
+        "LICENSE-MIT",
+        "README.md",
+        "memory.x",
+        "rustfmt.toml",
+    ];
+    assert_eq!(top, known);
+    let (size, path) = files.iter().max().unwrap();
+    assert!((100_000..1_000_000).contains(size), "{path} has {size} bytes");
 }
 
 /// Situation: the committed figure and page.
