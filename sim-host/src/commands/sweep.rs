@@ -1,7 +1,7 @@
 //! Basins over a grid of conditions. A cell is a scenario, changed by the common options and by one value of every axis.
 
 use super::{CommandError, Hooks, Setup};
-use crate::basin::{Search, border};
+use crate::basin::{Column, Search, borders, together};
 use crate::scenario::setting::{CONDITIONS, Given, GivenError, Setting};
 use crate::scenario::{RiderChoice, Scenario, Speeds, named};
 use crate::sweep::{Axis, Cell, DoneColumn, Plan, SweepError, Unit, check, combination, count, label};
@@ -149,11 +149,15 @@ pub fn unit(id: &str, config: &Value, scenario: &Value, hooks: Hooks) -> Result<
     })?;
     let setup = Setup::new(&read)?;
     let search = read.search.resolve(read.is_ridden())?;
-    let column = |(i, speed): (usize, &f64)| -> Option<DoneColumn> {
-        let column = (!(hooks.stop)()).then(|| border(&setup.conditions, &search, *speed));
-        (hooks.finished)();
-        column.map(|column| DoneColumn::new(i, &column))
+    let size = together(&setup.conditions, &search, search.speeds.len());
+    let group = |speeds: &[f64]| {
+        let columns = (!(hooks.stop)()).then(|| borders(&setup.conditions, &search, speeds));
+        speeds.iter().for_each(|_| (hooks.finished)());
+        columns
     };
-    let columns: Option<Vec<DoneColumn>> = search.speeds.par_iter().enumerate().map(column).collect();
-    Ok(columns.map(|columns| Unit::new(id, (config, scenario), columns)))
+    let columns: Option<Vec<Vec<Column>>> = search.speeds.par_chunks(size).map(group).collect();
+    let done = |columns: Vec<Vec<Column>>| {
+        columns.iter().flatten().enumerate().map(|(i, column)| DoneColumn::new(i, column)).collect()
+    };
+    Ok(columns.map(|columns| Unit::new(id, (config, scenario), done(columns))))
 }

@@ -1,6 +1,6 @@
 //! A trial: bicycle, rider, sensor delay and motor limits. Laws are compared by their basins in a trial.
 
-use crate::basin::{Basin, Column, Search, SearchError, border};
+use crate::basin::{Basin, Column, Search, SearchError, borders, together};
 use crate::parameters::departing;
 use crate::ride::Conditions;
 use crate::scenario::{Resolved, RiderChoice, Scenario, ScenarioError, law};
@@ -95,18 +95,27 @@ pub fn basins(
     let conditions: Vec<Conditions> =
         requested.iter().map(|(trial, law)| trial.conditions(law)).collect::<Result<_, _>>()?;
     let speeds = search.speeds.len();
-    let columns: Option<Vec<Column>> = (0..requested.len() * speeds)
+    let groups: Vec<(usize, &[f64])> = conditions
+        .iter()
+        .enumerate()
+        .flat_map(|(of, conditions)| {
+            let size = together(conditions, search, requested.len() * speeds);
+            search.speeds.chunks(size).map(move |speeds| (of, speeds))
+        })
+        .collect();
+    let columns: Option<Vec<Vec<Column>>> = groups
         .into_par_iter()
-        .map(|i| {
+        .map(|(of, speeds)| {
             if stop() {
                 return None;
             }
-            let column = border(&conditions[i / speeds], search, search.speeds[i % speeds]);
-            advanced();
-            Some(column)
+            let columns = borders(&conditions[of], search, speeds);
+            speeds.iter().for_each(|_| advanced());
+            Some(columns)
         })
         .collect();
-    Ok(columns.map(|all| all.chunks(speeds).map(|columns| Basin { columns: columns.to_vec() }).collect()))
+    let basins = |all: Vec<Column>| all.chunks(speeds).map(|c| Basin { columns: c.to_vec() }).collect();
+    Ok(columns.map(|groups| basins(groups.into_iter().flatten().collect())))
 }
 
 /// The smallest area of a law over several trials.
@@ -145,11 +154,14 @@ pub fn least_area(
                 return Some(Least { area: bound.area(), of, capped: bound.capped() });
             }
             let mut basin = Basin { columns: Vec::new() };
-            for &speed in &search.speeds {
+            // In halves: less is computed in vain, and still many at once.
+            let half = search.speeds.len().div_ceil(2);
+            for speeds in search.speeds.chunks(half.min(together(&conditions[of], search, usize::MAX)).max(1))
+            {
                 if stop() {
                     return None;
                 }
-                basin.columns.push(border(&conditions[of], search, speed));
+                basin.columns.extend(borders(&conditions[of], search, speeds));
                 // Every strip of the area is at least zero.
                 if basin.area() > bound.area() {
                     break;

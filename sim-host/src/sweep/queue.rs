@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 const LOOK: Duration = Duration::from_millis(500);
 
 /// The next step of a thread.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Next {
-    /// Compute the column at a speed of a cell.
-    Column(usize, usize),
+    /// Compute the columns at some speeds of a cell.
+    Columns(usize, Vec<usize>),
     /// Store a cell whose columns are all finished.
     Store(usize),
     /// Ask again.
@@ -71,10 +71,15 @@ impl<'a> Queue<'a> {
         }
     }
 
-    /// The next step. Looks at one cell at most, so that other threads don't wait long.
-    pub(super) fn next(&mut self) -> Result<Next, SweepError> {
-        if let Some((cell, speed)) = self.columns.pop_front() {
-            return Ok(Next::Column(cell, speed));
+    /// The next step of a thread, with at most as many columns as `together` states for their cell and the number of columns that
+    /// are left. Looks at one cell at most, so that other threads don't wait long.
+    pub(super) fn next(&mut self, together: impl Fn(&Cell, usize) -> usize) -> Result<Next, SweepError> {
+        if let Some(&(cell, _)) = self.columns.front() {
+            let left = self.columns.len() + self.speeds * self.open.len();
+            let most = together(self.cells[cell], left);
+            let same = self.columns.iter().take(most).take_while(|(of, _)| *of == cell).count();
+            let speeds = self.columns.drain(..same).map(|(_, speed)| speed).collect();
+            return Ok(Next::Columns(cell, speeds));
         }
         if let Some(cell) = self.open.pop_front() {
             return self.attempt(cell);

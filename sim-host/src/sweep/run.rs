@@ -4,7 +4,7 @@ use super::claim::DoneColumn;
 use super::claims::renewing;
 use super::queue::{Next, Queue};
 use super::{Folder, SweepError, Wait};
-use crate::basin::{Search, border};
+use crate::basin::{Search, borders, together};
 use crate::ride::Conditions;
 use serde_json::Value;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -32,7 +32,7 @@ pub struct Progress<'a> {
     pub advanced: &'a (dyn Fn() + Sync),
     /// Called when all that is left is computed by other processes: after a second, then every minute.
     pub waits: &'a (dyn Fn(&Wait) + Sync),
-    /// Checked before every column; true stops the run.
+    /// Checked before the columns of a thread, of one cell; true stops the run.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
@@ -71,18 +71,23 @@ pub fn run(
         lock(&queue).stored(cell);
         Ok(())
     };
+    let together = |cell: &Cell, left| together(&cell.conditions, search, left);
     let thread = || -> Result<(), SweepError> {
         while !(progress.stop)() && !failed.load(Ordering::Relaxed) {
             let (next, given) = {
                 let mut queue = lock(&queue);
-                (queue.next()?, queue.given())
+                (queue.next(together)?, queue.given())
             };
             (0..given).for_each(|_| (progress.advanced)());
             match next {
-                Next::Column(cell, speed) => {
-                    let column = border(&cells[cell].conditions, search, search.speeds[speed]);
-                    (progress.advanced)();
-                    let whole = lock(&queue).finished(cell, DoneColumn::new(speed, &column));
+                Next::Columns(cell, indices) => {
+                    let speeds: Vec<f64> = indices.iter().map(|&speed| search.speeds[speed]).collect();
+                    let columns = borders(&cells[cell].conditions, search, &speeds);
+                    let mut whole = false;
+                    for (speed, column) in indices.into_iter().zip(&columns) {
+                        (progress.advanced)();
+                        whole = lock(&queue).finished(cell, DoneColumn::new(speed, column));
+                    }
                     if whole {
                         store(cell)?;
                     }

@@ -1,7 +1,7 @@
 //! The conditions of a basin search, as a small hashable key.
 
 use super::cyclist::Cyclist;
-use crate::basin::{Axis, Column, Method, Search, border, column};
+use crate::basin::{Axis, Column, Method, Search, borders, columns};
 use crate::bicycle::Geometry;
 use crate::ride::{Assist, Conditions, ScheduleSpeed};
 use control::Law;
@@ -112,10 +112,10 @@ impl Case {
         Conditions { schedule_speed: self.schedule, rider: self.rider.map(|r| r.rider()), ..thesis }
     }
 
-    /// The basin at one speed, under its [`Self::conditions`] and with its [`Self::search`].
-    pub fn column(&self, conditions: &Conditions, search: &Search, speed: f64) -> Column {
-        let find = if self.map { column } else { border };
-        find(conditions, search, speed)
+    /// The basins at some speeds, under its [`Self::conditions`] and with its [`Self::search`].
+    pub fn columns(&self, conditions: &Conditions, search: &Search, speeds: &[f64]) -> Vec<Column> {
+        let find = if self.map { columns } else { borders };
+        find(conditions, search, speeds)
     }
 
     /// The search of the basin.

@@ -1,7 +1,7 @@
 //! Data common to all items: the bicycle, the resolution, and basins computed once.
 
 use super::case::{Assisted, Case, Resolution};
-use crate::basin::{Basin, Column, Search};
+use crate::basin::{Basin, Column, Search, together};
 use crate::bicycle::linear::Linear;
 use crate::bicycle::{Geometry, Parameters, catalogue};
 use crate::eigen::{CriticalSpeeds, critical_speeds};
@@ -67,7 +67,8 @@ impl Study {
     /// The columns of a case's basin at some speeds \[m/s\], computed now.
     pub fn columns_at(&self, case: &Case, speeds: &[f64]) -> Vec<Column> {
         let (conditions, search) = (case.conditions(&self.bicycle), case.search(&self.resolution));
-        speeds.par_iter().map(|&v| case.column(&conditions, &search, v)).collect()
+        let size = together(&conditions, &search, speeds.len());
+        speeds.par_chunks(size).flat_map_iter(|speeds| case.columns(&conditions, &search, speeds)).collect()
     }
 
     /// Whether the basin of a case is stored.
@@ -81,23 +82,27 @@ impl Study {
         let missing: Vec<&Case> = cases.iter().filter(|c| !self.has(c)).collect();
         let searches: Vec<Search> = missing.iter().map(|c| c.search(&self.resolution)).collect();
         let conditions: Vec<Conditions> = missing.iter().map(|c| c.conditions(&self.bicycle)).collect();
-        let jobs = searches.iter().enumerate().flat_map(|(i, s)| (0..s.speeds.len()).map(move |k| (i, k)));
+        let left = searches.iter().map(|search| search.speeds.len()).sum();
+        let jobs = searches.iter().zip(&conditions).enumerate().flat_map(|(i, (search, conditions))| {
+            let size = together(conditions, search, left);
+            search.speeds.chunks(size).enumerate().map(move |(k, speeds)| (i, k, speeds))
+        });
         // A bridge distributes the jobs in order, one at a time.
-        let mut done: Vec<(usize, usize, Column)> = jobs
+        let mut done: Vec<(usize, usize, Vec<Column>)> = jobs
             .par_bridge()
-            .filter_map(|(i, k)| {
-                let one = || missing[i].column(&conditions[i], &searches[i], searches[i].speeds[k]);
-                let column = (!stop()).then(one)?;
-                finished();
-                Some((i, k, column))
+            .filter_map(|(i, k, speeds)| {
+                let some = || missing[i].columns(&conditions[i], &searches[i], speeds);
+                let columns = (!stop()).then(some)?;
+                speeds.iter().for_each(|_| finished());
+                Some((i, k, columns))
             })
             .collect();
         done.sort_by_key(|(i, k, _)| (*i, *k));
         let mut done = done.into_iter().peekable();
         for (i, case) in missing.into_iter().enumerate() {
             let mut columns = Vec::new();
-            while let Some((_, _, column)) = done.next_if(|(of, _, _)| *of == i) {
-                columns.push(column);
+            while let Some((_, _, some)) = done.next_if(|(of, _, _)| *of == i) {
+                columns.extend(some);
             }
             if columns.len() == searches[i].speeds.len() {
                 self.store(*case, Basin { columns });

@@ -1,25 +1,39 @@
-//! The neural delay in steps of any length: the signals at the ends of the steps, interpolated.
+//! A delay in steps of any length, the rider's neural one or that of a law: the signals at the ends of the steps, interpolated.
 //!
-//! As in [`super::DelayLine`] the cubic through the four nearest signals never spans the delay, where the signal's second
-//! derivative jumps. Later kinks are of higher order.
+//! As in [`super::DelayLine`] the cubic through the four nearest signals never spans the time at which the first signal arrives,
+//! where the signal has a kink, or a jump from another source. Later kinks are of higher order.
 
 use std::collections::VecDeque;
 
-/// Times that differ by less are the same \[s\].
-const SAME_S: f64 = 1e-9;
-
-/// Neural signals of one ride and their times.
+/// Signals of one ride and their times.
 #[derive(Clone, Debug)]
 pub struct SignalHistory {
     delay_s: f64,
+    /// Time at which the first signal arrives \[s\].
+    first_s: f64,
+    /// Time of a jump of the signal \[s\]; infinite if there is none.
+    jump_s: f64,
     /// Times \[s\] and signals \[N m\], oldest first.
     nodes: VecDeque<(f64, f64)>,
 }
 
 impl SignalHistory {
+    /// Times that differ by less are the same \[s\].
+    pub const SAME_S: f64 = 1e-9;
+
     /// No signals yet, for a delay above zero \[s\].
     pub fn new(delay_s: f64) -> Self {
-        Self { delay_s, nodes: VecDeque::new() }
+        Self::arriving_from(delay_s, delay_s)
+    }
+
+    /// The same with a first signal that arrives already at `first_s`, no later than its delay, and stays until then.
+    pub fn arriving_from(first_s: f64, delay_s: f64) -> Self {
+        Self { delay_s, first_s, jump_s: f64::INFINITY, nodes: VecDeque::new() }
+    }
+
+    /// The same of a signal that jumps at `jump_s` \[s\].
+    pub fn with_jump(self, jump_s: f64) -> Self {
+        Self { jump_s, ..self }
     }
 
     /// Clears all signals, for a new ride.
@@ -42,21 +56,22 @@ impl SignalHistory {
         }
     }
 
-    /// The longest step from `t` that does not pass a multiple of the delay at which the arriving signal has a kink, and no
-    /// longer than the delay \[s\].
+    /// The longest step from `t` that does not pass a time at which the arriving signal has a kink, and no longer than the delay
+    /// \[s\].
     pub fn longest_step_s(&self, t: f64) -> f64 {
-        let passed = ((t + SAME_S) / self.delay_s).floor();
-        if passed < 2.0 { (passed + 1.0) * self.delay_s - t } else { self.delay_s }
+        let Self { delay_s, first_s, jump_s, .. } = *self;
+        let kinks_s = [first_s, delay_s, first_s + delay_s, jump_s, jump_s + delay_s];
+        let left_s = kinks_s.into_iter().map(|kink_s| kink_s - t).filter(|left_s| *left_s > Self::SAME_S);
+        left_s.fold(delay_s, f64::min)
     }
 
     /// The signals that arrive at start, middle and end of the step of `h` seconds from `t`, the time of the latest signal;
-    /// zero before the delay has passed.
+    /// zero before the first one arrives.
     pub fn arriving(&self, t: f64, h: f64) -> [f64; 3] {
-        let sent = t - self.delay_s;
-        if sent < -SAME_S {
+        if t < self.first_s - Self::SAME_S {
             return [0.0; 3];
         }
-        [0.0, 0.5, 1.0].map(|part| self.at(sent + part * h))
+        [0.0, 0.5, 1.0].map(|part| self.at((t + part * h - self.delay_s).max(0.0)))
     }
 
     /// The signal at a past time \[s\], not before the oldest that is kept.
@@ -64,13 +79,21 @@ impl SignalHistory {
         let nodes = &self.nodes;
         let Some(last) = nodes.len().checked_sub(1) else { return 0.0 };
         let after = nodes.iter().position(|node| node.0 >= t).unwrap_or(last);
-        let early = t < self.delay_s;
-        let smooth = |i: usize| match early {
-            true => nodes[i].0 <= self.delay_s + SAME_S,
-            false => nodes[i].0 >= self.delay_s - SAME_S,
+        // The kink belongs to both sides, the jump to the later one.
+        let smooth = |i: usize| {
+            let node = nodes[i].0;
+            let by_kink = if t < self.first_s {
+                node <= self.first_s + Self::SAME_S
+            } else {
+                node >= self.first_s - Self::SAME_S
+            };
+            let before_jump = |t: f64| t < self.jump_s - Self::SAME_S;
+            by_kink && before_jump(node) == before_jump(t)
         };
-        let lowest = (after.saturating_sub(3)..after).find(|&i| smooth(i)).unwrap_or(after);
-        let highest = (after..=last.min(after + 2)).take_while(|&i| smooth(i)).last().unwrap_or(after);
+        let lowest =
+            (after.saturating_sub(4)..after).rev().take_while(|&i| smooth(i)).last().unwrap_or(after);
+        let highest = (after..=last.min(after + 2)).take_while(|&i| smooth(i)).last();
+        let highest = highest.unwrap_or(after.saturating_sub(1).max(lowest));
         let from = after.saturating_sub(2).max(lowest).min((highest + 1).saturating_sub(4).max(lowest));
         let to = highest.min(from + 3);
         // Lagrange interpolation.

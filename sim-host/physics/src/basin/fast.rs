@@ -87,28 +87,34 @@ pub(super) fn columns<L: Fn(f64) -> Start>(
     confirmed(conditions, quick, search, lines)
 }
 
-/// The basin along a line without islands: the scan ends soon after the first fall.
-pub(super) fn border<L: Fn(f64) -> Start>(
+/// The basins along some lines without islands: each scan ends soon after its first fall.
+pub(super) fn borders<L: Fn(f64) -> Start>(
     conditions: &Conditions,
     quick: &Quick,
     search: &Search,
-    start: &L,
-) -> Column {
+    lines: &[L],
+) -> Vec<Column> {
     let rates = rates(search);
-    let mut lines = vec![Line::new(start)];
-    let mut all: Vec<Outcome> = Vec::new();
+    let mut lines: Vec<Line<L>> = lines.iter().map(Line::new).collect();
+    let mut scans: Vec<Vec<Outcome>> = vec![Vec::new(); lines.len()];
     for group in rates.chunks(SECTIONS) {
-        let wanted: Vec<(usize, f64)> = group.iter().map(|&rate| (0, rate)).collect();
-        all.extend(outcomes(conditions, quick, &mut lines, &wanted));
-        if all.iter().any(|outcome| fell(*outcome)) {
-            break;
+        let on: Vec<usize> =
+            (0..lines.len()).filter(|&i| !scans[i].iter().any(|outcome| fell(*outcome))).collect();
+        let wanted: Vec<(usize, f64)> =
+            on.iter().flat_map(|&line| group.iter().map(move |&rate| (line, rate))).collect();
+        let done = outcomes(conditions, quick, &mut lines, &wanted);
+        for (line, done) in on.into_iter().zip(done.chunks(group.len())) {
+            scans[line].extend(done);
         }
     }
-    lines[0].scanned(&rates, &all);
-    lines[0].wide.truncate(1);
-    lines[0].edges.truncate(1);
-    let only = confirmed(conditions, quick, search, lines).pop();
-    only.map_or_else(|| plain(conditions, search, start), |column| Column { islands: Vec::new(), ..column })
+    for (line, scan) in lines.iter_mut().zip(&scans) {
+        line.scanned(&rates, scan);
+        line.wide.truncate(1);
+        line.edges.truncate(1);
+        line.outer.truncate(1);
+    }
+    let only = |column| Column { islands: Vec::new(), ..column };
+    confirmed(conditions, quick, search, lines).into_iter().map(only).collect()
 }
 
 impl<'a, L: Fn(f64) -> Start> Line<'a, L> {

@@ -18,5 +18,7 @@ pub use drawn::{Drawn, QUANTILES, drawn, drawn_bicycles, drawn_riders};
 pub use outline::{Basin, Column, Island, ScanPoint, Work, area};
 pub use plane::{Plane, PlaneSearch, Ray, plane};
 pub use rounds::{Refined, Rounds, SMALLEST_STEP, basin_in_rounds};
-pub use search::{Axis, Method, Search, SearchError, basin, basin_by, border, column};
+pub use search::{
+    Axis, Method, Search, SearchError, basin, basin_by, border, borders, column, columns, together,
+};
 pub use sensitivity::{Quantity, Sensitivity, sensitivities};

@@ -160,5 +160,7 @@ pub fn plane(
             .inspect(|ray| finished(ray))
             .collect()
     };
-    Ok(Plane { rays: all.par_chunks(together(conditions, &line)).flat_map_iter(explored).collect() })
+    Ok(Plane {
+        rays: all.par_chunks(together(conditions, &line, all.len())).flat_map_iter(explored).collect(),
+    })
 }

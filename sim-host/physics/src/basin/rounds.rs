@@ -1,6 +1,6 @@
 //! A search in rounds: from few speeds to all, and on to further speeds where the outline bends or jumps.
 
-use super::search::columns;
+use super::search::in_parallel;
 use super::{Basin, Column, Island, Search, SearchError};
 use crate::range::within_key;
 use crate::ride::Conditions;
@@ -49,7 +49,7 @@ pub fn basin_in_rounds(
     search.check()?;
     rounds.check()?;
     conditions.check()?;
-    let columns = |speeds: &[f64]| columns(conditions, search, speeds, &finished, &stop);
+    let columns = |speeds: &[f64]| in_parallel(conditions, search, speeds, &finished, &stop);
     let mut found = Refined { speeds: search.speeds.clone(), basin: Basin { columns: Vec::new() } };
     let given =
         if rounds.coarse_first { coarse_first(&search.speeds) } else { [search.speeds.clone(), Vec::new()] };

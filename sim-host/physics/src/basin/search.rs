@@ -151,11 +151,11 @@ pub fn basin(
 ) -> Result<Basin, SearchError> {
     search.check()?;
     conditions.check()?;
-    Ok(Basin { columns: columns(conditions, search, &search.speeds, finished, stop) })
+    Ok(Basin { columns: in_parallel(conditions, search, &search.speeds, finished, stop) })
 }
 
 /// The columns at `speeds` \[m/s\] in their order, as [`basin`] computes them; the search's own speeds are not used.
-pub(super) fn columns(
+pub(super) fn in_parallel(
     conditions: &Conditions,
     search: &Search,
     speeds: &[f64],
@@ -166,20 +166,20 @@ pub(super) fn columns(
         if stop() {
             return Vec::new();
         }
-        let lines: Vec<_> = speeds.iter().map(|&speed| move |rate| search.axis.start(speed, rate)).collect();
-        let columns = along(conditions, search, &lines);
+        let columns = columns(conditions, search, speeds);
         columns.iter().for_each(&finished);
         columns
     };
-    // Few speeds: fewer together, so that no core is without any.
-    let together = speeds.len().div_ceil(rayon::current_num_threads()).clamp(1, together(conditions, search));
+    let together = together(conditions, search, speeds.len());
     speeds.par_chunks(together).flat_map_iter(explored).collect()
 }
 
-/// Number of lines of disturbances to search together: by a fast search as many as rides are simulated side by side, so that the
-/// exact rides, two or more for each line, fill the lanes.
-pub(super) fn together(conditions: &Conditions, search: &Search) -> usize {
-    search.quick(conditions).map_or(1, |_| side_by_side())
+/// Number of speeds, or of other lines of disturbances, to search together if `left` are to be searched in all: by a fast search as
+/// many as rides are simulated side by side, so that the exact rides, two or more for each line, fill the lanes, but no more than
+/// leaves some for every thread of the current rayon pool; by a plain search one.
+pub fn together(conditions: &Conditions, search: &Search, left: usize) -> usize {
+    let most = search.quick(conditions).map_or(1, |_| side_by_side());
+    left.div_ceil(rayon::current_num_threads()).clamp(1, most)
 }
 
 /// As [`basin`], with exact rides only, simulated by `rides`, which returns them in the order of the starts.
@@ -212,8 +212,17 @@ pub fn basin_by<E: From<SearchError> + Send>(
 
 /// The basin at one speed.
 pub fn column(conditions: &Conditions, search: &Search, speed: f64) -> Column {
-    let start = |rate| search.axis.start(speed, rate);
-    along(conditions, search, &[start]).remove(0)
+    columns(conditions, search, &[speed]).remove(0)
+}
+
+/// The basins at some speeds \[m/s\], in one thread; best as many as [`together`] states.
+pub fn columns(conditions: &Conditions, search: &Search, speeds: &[f64]) -> Vec<Column> {
+    along(conditions, search, &lines(search, speeds))
+}
+
+/// The lines of disturbances at some speeds.
+fn lines<'a>(search: &'a Search, speeds: &'a [f64]) -> Vec<impl Fn(f64) -> Start + 'a> {
+    speeds.iter().map(|&speed| move |rate| search.axis.start(speed, rate)).collect()
 }
 
 /// The basins along lines of disturbances: each gives the initial state for a disturbance of 0 to `search.max_rate`. The
@@ -232,10 +241,18 @@ pub(super) fn along<L: Fn(f64) -> Start>(
 /// The basin at one speed without islands: the scan ends soon after the first fall. `upper` equals that of
 /// [`column()`].
 pub fn border(conditions: &Conditions, search: &Search, speed: f64) -> Column {
-    let start = |rate| search.axis.start(speed, rate);
+    borders(conditions, search, &[speed]).remove(0)
+}
+
+/// As [`border`] at some speeds \[m/s\], in one thread; best as many as [`together`] states.
+pub fn borders(conditions: &Conditions, search: &Search, speeds: &[f64]) -> Vec<Column> {
+    let lines = lines(search, speeds);
     if let Some(quick) = search.quick(conditions) {
-        return fast::border(conditions, &quick, search, &start);
+        return fast::borders(conditions, &quick, search, &lines);
     }
-    let Ok(column) = explored(&ridden(conditions), search, &start, true);
-    column
+    let first = |line| {
+        let Ok(column) = explored(&ridden(conditions), search, line, true);
+        column
+    };
+    lines.iter().map(|line| first(line)).collect()
 }

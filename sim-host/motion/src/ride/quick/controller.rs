@@ -3,6 +3,7 @@
 //! A step of the bicycle spans several control periods. In those after its start the readings are extrapolated from the
 //! starts of the last three steps.
 
+use super::limited::LateLaw;
 use crate::num::{Lanes, Scalar};
 use crate::plant::{Frame, Odometry, Plant, Reading};
 use crate::ride::assist::IdealLaw;
@@ -29,6 +30,8 @@ pub(super) struct Linear {
     pub(super) delay_s: f64,
     /// Largest torque \[N m\].
     pub(super) largest_nm: f64,
+    /// Largest rate of change of the torque \[N m/s\].
+    pub(super) largest_nm_s: f64,
     /// Speed from which the torque is that of the law \[m/s\].
     pub(super) slowest_m_s: f64,
 }
@@ -36,7 +39,23 @@ pub(super) struct Linear {
 impl Linear {
     /// Without limits.
     pub(super) fn unlimited(law: IdealLaw, delay_s: f64) -> Self {
-        Self { law, delay_s, largest_nm: f64::INFINITY, slowest_m_s: f64::NEG_INFINITY }
+        Self {
+            law,
+            delay_s,
+            largest_nm: f64::INFINITY,
+            largest_nm_s: f64::INFINITY,
+            slowest_m_s: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Of a law in continuous time; `None` if it is late or the motor inexact.
+    pub(super) fn of_law(law: &LateLaw) -> Option<Self> {
+        let mut linear = Self::unlimited(law.law.clone(), law.first_order_s);
+        if let Some(limits) = &law.limits {
+            (linear.largest_nm, linear.largest_nm_s) = (limits.largest_nm, limits.slower_nm_s());
+        }
+        let exact_motor = law.limits.is_none_or(|limits| limits.exact_motor());
+        (law.late.is_none() && exact_motor).then_some(linear)
     }
 
     /// Of an engaged controller; `None` if more than the roll-rate law and limits acts, or its roll rate is filtered.
@@ -54,6 +73,10 @@ impl Linear {
             law: IdealLaw { law: config.law.clone(), dead_band: config.dead_band },
             delay_s: 0.5 * conditions.step_s,
             largest_nm: config.limits.max_torque_nm.map_or(f64::INFINITY, f64::from),
+            largest_nm_s: [config.limits.rise_nm_s, config.limits.fall_nm_s]
+                .into_iter()
+                .flatten()
+                .fold(f64::INFINITY, |least, rate| least.min(f64::from(rate))),
             slowest_m_s: config.limits.taper.map_or(f64::NEG_INFINITY, |taper| taper.full_m_s.into()),
         })
     }

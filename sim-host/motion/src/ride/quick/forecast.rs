@@ -63,7 +63,7 @@ impl Forecast {
     pub(super) fn new(conditions: &Conditions, source: &Source) -> Option<Self> {
         let assist = match source {
             Source::None => Linear::unlimited(IdealLaw::from(Law::None), 0.0),
-            Source::Ideal(law, delay_s) => Linear::unlimited((**law).clone(), *delay_s),
+            Source::Law(law) => Linear::of_law(law)?,
             Source::Sampled(plan) => Linear::of(conditions, plan)?,
             Source::Own(_) => return None,
         };
@@ -99,7 +99,8 @@ impl Forecast {
             ScheduleSpeed::Initial => now.initial_m_s,
             ScheduleSpeed::Front | ScheduleSpeed::Rear => speed,
         };
-        let Linear { law: IdealLaw { law, .. }, delay_s, largest_nm, slowest_m_s } = &self.assist;
+        let Linear { law: IdealLaw { law, .. }, delay_s, largest_nm, largest_nm_s, slowest_m_s } =
+            &self.assist;
         let gain = law.gain(scheduled);
         let smooth = |factor: f64| (law.gain(factor * scheduled) - gain).abs() <= GAIN_CHANGE * gain.abs();
         if !(smooth(0.99) && smooth(1.01))
@@ -108,13 +109,14 @@ impl Forecast {
         {
             return None;
         }
+        let most_rad_s2 = largest_nm_s / gain.abs();
         let bicycle = self.upright.under(speed, gain, *delay_s)?;
         let x = [state.roll, state.steer, state.roll_rate, state.steer_rate];
         let (Some(rider), Some((rider_state, history))) = (&self.rider, &now.rider) else {
             let matrix = std::array::from_fn(|i| std::array::from_fn(|j| bicycle[i][j]));
             let steps = (left_s / STEP_S).ceil().max(1.0);
             let transition: Matrix<BICYCLE> = exponential(&matrix, left_s / steps);
-            return largest(x, (steps as u32, left_s / steps), |x| times(&transition, x));
+            return largest(x, (steps as u32, left_s / steps), most_rad_s2, |x| times(&transition, x));
         };
         let ([roll, steer, roll_rate, steer_rate], r) = (x, rider_state);
         let x = [
@@ -136,13 +138,13 @@ impl Forecast {
             None => {
                 let steps = (left_s / RIDER_STEP_S).ceil().max(1.0);
                 let transition = exponential(&ridden.closed(), left_s / steps);
-                largest(x, (steps as u32, left_s / steps), |x| times(&transition, x))
+                largest(x, (steps as u32, left_s / steps), most_rad_s2, |x| times(&transition, x))
             }
             Some(history) => {
                 let step_s = rider.delay_s / (rider.delay_s / RIDER_STEP_S).ceil();
                 let mut delayed = Delayed::new(&ridden, (rider.delay_s, step_s), now.t_s, &x, history);
                 let steps = (left_s / step_s).ceil().max(1.0) as u32;
-                largest(x, (steps, step_s), |x| delayed.step(x))
+                largest(x, (steps, step_s), most_rad_s2, |x| delayed.step(x))
             }
         }
     }
@@ -153,18 +155,20 @@ impl Forecast {
     }
 }
 
-/// The largest angles of a linear motion over `steps` of `step_s` seconds; `None` if it does not remain small. The first
-/// four entries of its state are those of the bicycle.
+/// The largest angles of a linear motion over `steps` of `step_s` seconds; `None` if it does not remain small, or if the roll rate
+/// changes faster than `most_rad_s2`. The first four entries of its state are those of the bicycle.
 fn largest<const N: usize>(
     mut x: [f64; N],
     (steps, step_s): (u32, f64),
+    most_rad_s2: f64,
     mut next: impl FnMut(&[f64; N]) -> [f64; N],
 ) -> Option<Amplitudes> {
     let (mut late, mut peak) = ([0.0_f64; 2], [0.0_f64; 2]);
     for step in 1..=steps {
+        let before_rad_s = x[2];
         x = next(&x);
         let small = x[0].abs().max(x[1].abs()) < LARGEST_RAD && x[2].abs().max(x[3].abs()) < LARGEST_RAD_S;
-        if !small {
+        if !small || (x[2] - before_rad_s).abs() > most_rad_s2 * step_s {
             return None;
         }
         for i in 0..2 {

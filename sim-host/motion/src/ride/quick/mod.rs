@@ -7,6 +7,7 @@
 mod controller;
 mod forecast;
 mod lane;
+mod limited;
 mod linear;
 mod riders;
 mod source;
@@ -15,7 +16,7 @@ use super::hardware::{self, lane_frame};
 use super::instructions::Instructions;
 use super::sensor::readings;
 use super::substeps::{nearer, stiffness};
-use super::{Conditions, Outcome, Start};
+use super::{Assist, Conditions, Outcome, Start};
 use crate::bicycle::{FullState, Geometry, Motion, State, Torques};
 use crate::integrate::{AHEAD, STAGES, WEIGHT, rate};
 use crate::num::{Aligned, Lanes};
@@ -24,8 +25,9 @@ use crate::rider::Instant;
 use controller::{Controllers, StepStart};
 use forecast::{Forecast, Now};
 use lane::Lane;
+use limited::Limited;
 use riders::QuickRiders;
-use source::Source;
+use source::{Given, Source};
 
 /// Longest step \[s\].
 const LONGEST_S: f64 = 20e-3;
@@ -99,12 +101,20 @@ impl<'a> Quick<'a> {
     /// function is executed in every control period.
     pub fn new(conditions: &'a Conditions) -> Option<Self> {
         let actuator = &conditions.plant.actuator;
-        let bare = conditions.plant.exact()
-            && conditions.sensor_delay_ticks == 0
-            && !actuator.friction.acts()
-            && actuator.stop.is_none();
         let source = Source::new(conditions);
+        let late_or_exact = match &conditions.assist {
+            Assist::Firmware(_) if source.law().is_some() => {
+                conditions.plant.reads_exactly()
+                    && actuator.time_constant_s == 0.0
+                    && actuator.supply.is_none()
+            }
+            Assist::None => true,
+            _ => conditions.plant.exact() && conditions.sensor_delay_ticks == 0,
+        };
+        let bare = late_or_exact && !actuator.friction.acts() && actuator.stop.is_none();
         let longest_s = if source.sampled().is_some() { controller::LONGEST_S } else { LONGEST_S };
+        let late_s = source.law().and_then(|law| law.late).map_or(f64::INFINITY, |late| late.delay_s);
+        let longest_s = longest_s.min(late_s);
         let monitored = source.sampled().is_some() && hardware::needed(conditions);
         let longest_s = conditions.rider.as_ref().map_or(longest_s, riders::longest_step_s).min(longest_s);
         if !bare || longest_s < WORTH * conditions.step_s {
@@ -157,8 +167,10 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     let mut state = Aligned(State::upright(b, still));
     let mut initial = still;
     let mut slopes = [still; 2];
-    let mut riders = conditions.rider.as_ref().map(QuickRiders::<N>::new);
+    let law_s = source.law().and_then(|law| law.late).map_or(f64::INFINITY, |late| late.arrives_s);
+    let mut riders = conditions.rider.as_ref().map(|rider| QuickRiders::<N>::new(rider, law_s));
     let mut controllers = source.sampled().map(|plan| Controllers::<N>::new(conditions, plan));
+    let mut limited = source.law().and_then(Limited::<N>::new);
     let mut lanes: [Option<Lane>; N] = std::array::from_fn(|_| None);
     loop {
         for (lane, ride) in lanes.iter_mut().enumerate().filter(|(_, ride)| ride.is_none()) {
@@ -172,6 +184,9 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             }
             if let Some(controllers) = &mut controllers {
                 controllers.restart(lane, &start);
+            }
+            if let Some(limited) = &mut limited {
+                limited.restart(lane);
             }
             *ride = next.map(|(index, _)| Lane::new(index));
         }
@@ -199,12 +214,19 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                     &t,
                     &stiff,
                     |lane, t, rate_rad_s| {
+                        let of_rider = riders.as_ref().map(|riders| riders.longest_step_s(lane, t));
+                        let of_law = limited.as_ref().map(|limited| limited.longest_step_s(lane, t));
                         let longest_s = longest_s.min((extrapolated / rate_rad_s).max(conditions.step_s));
-                        riders
-                            .as_ref()
-                            .map_or(longest_s, |riders| longest_s.min(riders.longest_step_s(lane, t)))
+                        of_rider.into_iter().chain(of_law).fold(longest_s, f64::min)
                     },
                 );
+                if let Some(limited) = &mut limited {
+                    let wanted_nm = source.torques(measured, slopes, None);
+                    for (lane, t) in t.iter().enumerate() {
+                        let Some(t) = *t else { continue };
+                        h.0[lane] = limited.begin(lane, (t, h.0[lane]), wanted_nm.0[lane]);
+                    }
+                }
                 if let Some(controllers) = &mut controllers {
                     // A copy: what no other function refers to can stay in registers.
                     let seen = Aligned(motion);
@@ -229,16 +251,23 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 slopes = [(measured.0 - at_start.0) * per_s, (measured.1 - at_start.1) * per_s];
             }
             let sampled_nm = controllers.as_ref().map(|controllers| controllers.line.at(part));
-            let assist_nm = source.torques(measured, slopes, sampled_nm);
+            let mut assist_nm = source.torques(measured, slopes, sampled_nm);
+            if let Some(limited) = &mut limited {
+                assist_nm = limited.torques(stage, assist_nm);
+            }
             let steer = riders.as_ref().map_or(assist_nm, |riders| assist_nm + riders.torque_nm());
             let torques = Torques { roll: still, steer };
             let (acc, by_steer) = motion.accelerations_by_steer(b, &torques);
             if let Some(riders) = &mut riders {
                 let mut sensed = acc;
-                if riders.sampled() {
+                if stage == 0 && riders.sampled() {
                     // The accelerations in a sampled rider's signals contain the torque that was computed from the same sample.
                     let held_nm = controllers.as_ref().map(|controllers| controllers.held_nm);
-                    let later_nm = source.torques(measured, [still; 2], held_nm) - assist_nm;
+                    let mut later_nm = source.torques(measured, [still; 2], held_nm);
+                    if let Some(limited) = &limited {
+                        later_nm = limited.held(&t, later_nm);
+                    }
+                    let later_nm = later_nm - assist_nm;
                     sensed.roll = sensed.roll + by_steer.roll * later_nm;
                     sensed.steer = sensed.steer + by_steer.steer * later_nm;
                 }
@@ -257,8 +286,12 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 let from = ride.full.unwrap_or_else(|| six_speeds(b, &before));
                 let mut slope = slopes_before.map(|slope| slope.0[lane]);
                 let mut rider = riders.as_mut().map(|riders| riders.one(lane, (ride.t, h)));
-                let line = controllers.as_ref().map(|controllers| controllers.line.of(lane));
-                let at = (initial.0[lane], &mut slope, line);
+                let given = match (&controllers, &mut limited) {
+                    (Some(controllers), _) => Given::Line(controllers.line.of(lane)),
+                    (None, Some(limited)) => Given::Limited(limited.one(lane, ride.t)),
+                    (None, None) => Given::Law,
+                };
+                let at = (initial.0[lane], &mut slope, given);
                 ride.full = source.full_step(conditions, &from, h, at, rider.as_mut());
                 let rider_state = rider.map(|rider| rider.end());
                 if let (Some(riders), Some(rider_state)) = (&mut riders, rider_state) {
@@ -276,8 +309,9 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 None => {
                     let rider = riders.as_ref().map(|riders| riders.after(lane));
                     let engaged = controllers.as_ref().is_none_or(|controllers| controllers.engaged(lane));
-                    let now =
-                        Now { t_s: ride.t, engaged, state: &after, rider, initial_m_s: initial.0[lane] };
+                    let free = limited.as_ref().is_none_or(|limited| limited.free(lane));
+                    let (engaged, initial_m_s) = (engaged && free, initial.0[lane]);
+                    let now = Now { t_s: ride.t, engaged, state: &after, rider, initial_m_s };
                     ride.decide_early(conditions, forecast, &now).map(Some)
                 }
                 ended => ended,

@@ -31,15 +31,17 @@ pub(super) struct QuickRiders<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> QuickRiders<'a, N> {
-    pub(super) fn new(rider: &'a Rider) -> Self {
+    /// Beside a law whose torque begins at `law_s` \[s\]: infinite without one.
+    pub(super) fn new(rider: &'a Rider, law_s: f64) -> Self {
         let fresh = RiderState::fresh();
         let delayed = rider.delay_s > 0.0;
+        let history = || SignalHistory::new(rider.delay_s).with_jump(law_s);
         Self {
             rider,
             start: fresh,
             at: fresh,
             end: fresh,
-            histories: delayed.then(|| std::array::from_fn(|_| SignalHistory::new(rider.delay_s))),
+            histories: delayed.then(|| std::array::from_fn(|_| history())),
             arriving: [Lanes([0.0; N]); 3],
         }
     }

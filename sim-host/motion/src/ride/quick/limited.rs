@@ -1,0 +1,377 @@
+//! A law in continuous time whose torque arrives late and is limited: in its magnitude, in its change, and by the motor.
+//!
+//! A delay of whole control periods acts on the law's torque, which is stored at the starts of the steps. The limits act on what
+//! arrives; with the delay of a motor behind them they would act earlier by that delay, with the same result.
+
+use crate::integrate::STAGES;
+use crate::num::Lanes;
+use crate::ride::Conditions;
+use crate::ride::assist::IdealLaw;
+use crate::rider::SignalHistory;
+use control::Limits;
+
+/// Rate of change that counts as none \[N m/s\].
+const UNLIMITED_NM_S: f64 = 1e9;
+/// Parts of a step at whose ends the limits are compared, and halvings of the part in which another begins to act.
+const PARTS: u32 = 4;
+const HALVINGS: u32 = 6;
+/// Shortest step up to such a time, in control periods.
+const SHORTEST_PERIODS: f64 = 0.2;
+
+/// A law in continuous time, and what is between the law and the steer axis.
+#[derive(Clone, Debug)]
+pub(super) struct LateLaw {
+    pub(super) law: IdealLaw,
+    /// Half a control period of a law that is sampled and held \[s\].
+    half_period_s: f64,
+    /// Delay of the torque to first order \[s\]: half a control period, if there is no other delay.
+    pub(super) first_order_s: f64,
+    /// Delay of whole control periods, if there is one.
+    pub(super) late: Option<Late>,
+    /// Limits, if there are any.
+    pub(super) limits: Option<TorqueLimits>,
+}
+
+/// A delay of whole control periods of a law that is sampled and held.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Late {
+    /// Time at which the torque of the first control period begins \[s\].
+    pub(super) arrives_s: f64,
+    /// Delay of the law in continuous time \[s\]: half a period more.
+    pub(super) delay_s: f64,
+}
+
+/// Limits of the torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TorqueLimits {
+    /// Largest commanded torque \[N m\].
+    pub(super) largest_nm: f64,
+    /// Largest rate of change away from zero, and towards zero \[N m/s\].
+    rise_nm_s: f64,
+    fall_nm_s: f64,
+    /// Delivered over commanded torque, and the largest that the motor delivers \[N m\].
+    scale: f64,
+    delivered_nm: f64,
+}
+
+impl LateLaw {
+    /// A law with exact sensors and motor.
+    pub(super) fn ideal(law: IdealLaw) -> Self {
+        Self { law, half_period_s: 0.0, first_order_s: 0.0, late: None, limits: None }
+    }
+
+    /// A law that the control crate executes, under these limits.
+    pub(super) fn sampled(conditions: &Conditions, law: IdealLaw, limits: &Limits) -> Self {
+        let actuator = &conditions.plant.actuator;
+        let half_s = 0.5 * conditions.step_s;
+        let ticks = u32::from(conditions.sensor_delay_ticks) + u32::from(actuator.delay_ticks);
+        let arrives_s = f64::from(ticks) * conditions.step_s;
+        let late = (ticks > 0).then_some(Late { arrives_s, delay_s: arrives_s + half_s });
+        let rate = |nm_s: Option<f32>| nm_s.map_or(UNLIMITED_NM_S, f64::from);
+        let limits = TorqueLimits {
+            largest_nm: limits.max_torque_nm.map_or(f64::INFINITY, f64::from),
+            rise_nm_s: rate(limits.rise_nm_s),
+            fall_nm_s: rate(limits.fall_nm_s),
+            scale: actuator.scale,
+            delivered_nm: actuator.limit_nm.unwrap_or(f64::INFINITY),
+        };
+        Self {
+            law,
+            half_period_s: half_s,
+            first_order_s: if late.is_some() { 0.0 } else { half_s },
+            late,
+            limits: (limits != TorqueLimits::NONE).then_some(limits),
+        }
+    }
+}
+
+impl TorqueLimits {
+    const NONE: Self = Self {
+        largest_nm: f64::INFINITY,
+        rise_nm_s: UNLIMITED_NM_S,
+        fall_nm_s: UNLIMITED_NM_S,
+        scale: 1.0,
+        delivered_nm: f64::INFINITY,
+    };
+
+    /// The slower rate of change \[N m/s\].
+    pub(super) fn slower_nm_s(&self) -> f64 {
+        self.rise_nm_s.min(self.fall_nm_s)
+    }
+
+    /// Whether the motor delivers what is commanded.
+    pub(super) fn exact_motor(&self) -> bool {
+        self.scale == 1.0 && self.delivered_nm == f64::INFINITY
+    }
+
+    /// The command `elapsed_s` after it was `began_nm`, if the law's torque is `wanted_nm` \[N m\]. The limiter of the control
+    /// crate in continuous time: a torque that changes sign first falls to zero.
+    fn command(&self, began_nm: f64, wanted_nm: f64, elapsed_s: f64) -> f64 {
+        let wanted = wanted_nm.max(-self.largest_nm).min(self.largest_nm);
+        if self.slower_nm_s() >= UNLIMITED_NM_S {
+            return wanted;
+        }
+        let side = if began_nm < 0.0 { -1.0 } else { 1.0 };
+        let risen = side * began_nm + self.rise_nm_s * elapsed_s;
+        let fallen = side * began_nm - self.fall_nm_s * elapsed_s;
+        let fallen = if fallen < 0.0 { fallen * (self.rise_nm_s / self.fall_nm_s) } else { fallen };
+        side * (side * wanted).max(fallen).min(risen)
+    }
+
+    /// What determines [`Self::command`].
+    fn by(&self, began_nm: f64, wanted_nm: f64, elapsed_s: f64) -> By {
+        let command_nm = self.command(began_nm, wanted_nm, elapsed_s);
+        if command_nm == wanted_nm {
+            By::Law
+        } else if command_nm.abs() == self.largest_nm {
+            By::Magnitude
+        } else if command_nm < 0.0 {
+            By::RateLeft
+        } else {
+            By::RateRight
+        }
+    }
+
+    /// The motor's torque by the command \[N m\].
+    fn delivered(&self, command_nm: f64) -> f64 {
+        (self.scale * command_nm).max(-self.delivered_nm).min(self.delivered_nm)
+    }
+}
+
+impl Late {
+    fn history(&self) -> SignalHistory {
+        SignalHistory::arriving_from(self.arrives_s, self.delay_s)
+    }
+}
+
+/// The law's torque over a step, at its start, middle and end \[N m\].
+type Wanted = [f64; 3];
+
+/// What determines a command.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum By {
+    Law,
+    Magnitude,
+    /// The rates of change on the two sides of zero.
+    RateLeft,
+    RateRight,
+}
+
+/// The state of a lane.
+#[derive(Clone, Debug)]
+struct LimitedLane {
+    /// The law's torques, if they are late.
+    history: Option<SignalHistory>,
+    /// The same at the starts of the last three steps, latest first, and their times \[s\].
+    past: [(f64, f64); 3],
+    known: usize,
+    /// A command in the last step \[N m\], and the time from it to the step's end \[s\].
+    before: (f64, f64),
+    /// The same of this step.
+    after: (f64, f64),
+    /// Command at the start of the step \[N m\], and the time for which it is held \[s\].
+    began: (f64, f64),
+    /// Length of the step \[s\].
+    h: f64,
+    /// What arrives over the step.
+    wanted: Wanted,
+    /// Whether no limit acted at the last stage.
+    free: bool,
+}
+
+/// The torques in the lanes.
+pub(super) struct Limited<'a, const N: usize> {
+    limits: TorqueLimits,
+    law: &'a LateLaw,
+    lanes: [LimitedLane; N],
+}
+
+impl<'a, const N: usize> Limited<'a, N> {
+    /// At rest; `None` for a law without delay and limits.
+    pub(super) fn new(law: &'a LateLaw) -> Option<Self> {
+        let limits = law.limits.unwrap_or(TorqueLimits::NONE);
+        let lane = || LimitedLane {
+            history: law.late.as_ref().map(Late::history),
+            past: [(0.0, 0.0); 3],
+            known: 0,
+            before: (0.0, 0.0),
+            after: (0.0, 0.0),
+            began: (0.0, 0.0),
+            h: 0.0,
+            wanted: [0.0; 3],
+            free: false,
+        };
+        let acts = law.late.is_some() || law.limits.is_some();
+        acts.then(|| Self { limits, law, lanes: std::array::from_fn(|_| lane()) })
+    }
+
+    /// Resets a lane for a new ride.
+    pub(super) fn restart(&mut self, lane: usize) {
+        let lane = &mut self.lanes[lane];
+        lane.history.iter_mut().for_each(SignalHistory::clear);
+        (lane.known, lane.after) = Default::default();
+    }
+
+    /// Longest step of a lane from `t` \[s\].
+    pub(super) fn longest_step_s(&self, lane: usize, t: f64) -> f64 {
+        match &self.lanes[lane].history {
+            Some(history) => history.longest_step_s(t),
+            // The step's own start is the third.
+            None if self.lanes[lane].known < 2 => 2.0 * self.law.half_period_s,
+            None => f64::INFINITY,
+        }
+    }
+
+    /// Begins a lane's step of at most `h` seconds from `t`, at whose start the law's torque is `wanted_nm`. Returns its length:
+    /// it ends where another limit begins to act, a kink of the torque.
+    pub(super) fn begin(&mut self, lane: usize, (t, h): (f64, f64), wanted_nm: f64) -> f64 {
+        let lane = &mut self.lanes[lane];
+        if let Some(history) = &mut lane.history {
+            history.push(t, wanted_nm);
+        }
+        lane.past = [(t, wanted_nm), lane.past[0], lane.past[1]];
+        lane.known = (lane.known + 1).min(3);
+        lane.before = lane.after;
+        lane.begin((self.law, &self.limits), t, h);
+        let shorter = h.min(lane.kink_s(&self.limits).max(SHORTEST_PERIODS * 2.0 * self.law.half_period_s));
+        if shorter < h {
+            lane.begin((self.law, &self.limits), t, shorter);
+        }
+        shorter
+    }
+
+    /// Whether no limit acts in a lane.
+    pub(super) fn free(&self, lane: usize) -> bool {
+        self.lanes[lane].free
+    }
+
+    /// The motor's torques at a stage of the steps, where the law's torques are `wanted_nm`.
+    pub(super) fn torques(&mut self, stage: usize, wanted_nm: Lanes<N>) -> Lanes<N> {
+        Lanes(std::array::from_fn(|i| self.lanes[i].torque(&self.limits, stage, wanted_nm.0[i])))
+    }
+
+    /// The torques that the exact rides' control instants at the start of the steps give, if those of a sampled law there are
+    /// `sampled_nm`.
+    pub(super) fn held(&self, t: &[Option<f64>; N], sampled_nm: Lanes<N>) -> Lanes<N> {
+        Lanes(std::array::from_fn(|i| {
+            let lane = &self.lanes[i];
+            let wanted_nm = match (&lane.history, t[i]) {
+                (Some(history), Some(t)) => history.arriving(t + self.law.half_period_s, 0.0)[0],
+                _ => sampled_nm.0[i],
+            };
+            self.limits.delivered(self.limits.command(lane.began.0, wanted_nm, self.law.half_period_s))
+        }))
+    }
+
+    /// The torque in a lane, in a step with six speeds from `t`.
+    pub(super) fn one(&mut self, lane: usize, t: f64) -> LimitedRide<'_> {
+        LimitedRide { law: self.law, limits: self.limits, t, lane: &mut self.lanes[lane] }
+    }
+}
+
+impl LimitedLane {
+    /// Begins a step of `h` seconds from `t`, of which the law's torque at its start is stored.
+    fn begin(&mut self, (law, limits): (&LateLaw, &TorqueLimits), t: f64, h: f64) {
+        self.h = h;
+        self.wanted = match &self.history {
+            Some(history) => history.arriving(t, h),
+            None => [0.0, 0.5, 1.0].map(|part| self.extrapolated(part * h)),
+        };
+        let first_s = law.late.map_or(0.0, |late| late.arrives_s);
+        self.began = if (t - first_s).abs() < SignalHistory::SAME_S {
+            // The first control period's command is held; it is the mean of the period.
+            (limits.command(0.0, self.wanted[0], 2.0 * law.half_period_s), law.half_period_s)
+        } else {
+            let (before_nm, elapsed_s) = self.before;
+            (limits.command(before_nm, self.wanted[0], elapsed_s), 0.0)
+        };
+        self.after = (self.began.0, (h - self.began.1).max(0.0));
+    }
+
+    /// The time from the step's start at which another limit begins to act \[s\]; infinite if that is not within the step.
+    fn kink_s(&self, limits: &TorqueLimits) -> f64 {
+        let by = |part: f64| limits.by(self.began.0, between(&self.wanted, part), part * self.h);
+        let first = by(0.5 / f64::from(PARTS));
+        let Some(other) =
+            (1..=PARTS).map(|i| f64::from(i) / f64::from(PARTS)).find(|&part| by(part) != first)
+        else {
+            return f64::INFINITY;
+        };
+        let (mut same, mut other) = (other - 1.0 / f64::from(PARTS), other);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (same + other);
+            if by(middle) == first { same = middle } else { other = middle }
+        }
+        other * self.h
+    }
+
+    /// The law's torque `ahead_s` after the latest stored one: the parabola through the last three, as far as there are.
+    fn extrapolated(&self, ahead_s: f64) -> f64 {
+        let [(t0, y0), (t1, y1), (t2, y2)] = self.past;
+        if self.known < 3 {
+            return y0;
+        }
+        let (first, second) = ((y0 - y1) / (t0 - t1), (y1 - y2) / (t1 - t2));
+        y0 + ahead_s * (first + (ahead_s + t0 - t1) * (first - second) / (t0 - t2))
+    }
+
+    /// The motor's torque at a stage, where the law's torque is `wanted_nm`.
+    fn torque(&mut self, limits: &TorqueLimits, stage: usize, wanted_nm: f64) -> f64 {
+        let part = STAGES[stage];
+        let wanted_nm = if self.history.is_some() { self.wanted[(2.0 * part) as usize] } else { wanted_nm };
+        let (began_nm, held_s) = self.began;
+        let command_nm = limits.command(began_nm, wanted_nm, (part * self.h - held_s).max(0.0));
+        self.free = command_nm == wanted_nm;
+        limits.delivered(command_nm)
+    }
+}
+
+/// The torque after `part` of a step: the parabola through start, middle and end.
+fn between([start, middle, end]: &Wanted, part: f64) -> f64 {
+    let curved = 2.0 * (start - 2.0 * middle + end);
+    start + part * (end - start - curved * (1.0 - part))
+}
+
+/// The torque of one ride in a step with six speeds.
+pub(super) struct LimitedRide<'a> {
+    law: &'a LateLaw,
+    limits: TorqueLimits,
+    t: f64,
+    lane: &'a mut LimitedLane,
+}
+
+impl LimitedRide<'_> {
+    /// The motor's torque at a stage. The lane stored the law's torque at the start from the independent speeds, which is
+    /// replaced.
+    pub(super) fn torque_nm(&mut self, stage: usize, wanted_nm: f64) -> f64 {
+        if stage == 0 {
+            if let Some(history) = &mut self.lane.history {
+                history.correct(wanted_nm);
+            }
+            self.lane.past[0].1 = wanted_nm;
+            let h = self.lane.h;
+            self.lane.begin((self.law, &self.limits), self.t, h);
+        }
+        self.lane.torque(&self.limits, stage, wanted_nm)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A torque of 3 N m that is to become -4 N m, rise 10 and fall 20 N m/s: zero after 0.15 s, then a rise of 10 N m/s to the
+    /// other side.
+    #[test]
+    fn a_torque_that_changes_sign_first_falls_to_zero() {
+        let limits = TorqueLimits { largest_nm: 3.5, rise_nm_s: 10.0, fall_nm_s: 20.0, ..TorqueLimits::NONE };
+        for (elapsed_s, torque_nm) in [(0.0, 3.0), (0.1, 1.0), (0.15, 0.0), (0.25, -1.0), (1.0, -3.5)] {
+            for side in [1.0, -1.0] {
+                let now = limits.command(side * 3.0, side * -4.0, elapsed_s);
+                assert!((now - side * torque_nm).abs() < 1e-12, "{now} N m after {elapsed_s} s");
+            }
+        }
+        assert!((limits.command(1.0, 4.0, 0.1) - 2.0).abs() < 1e-12, "a torque on the same side rises");
+        assert_eq!(limits.command(1.0, 1.5, 0.1), 1.5, "a torque within reach is reached");
+    }
+}
