@@ -42,6 +42,7 @@ impl FullState {
     }
 
     /// The pose at the stored pitch.
+    #[inline(always)]
     pub fn pose(&self, b: &Geometry) -> Pose<f64> {
         let [roll, pitch, steer] = self.angles;
         let tilt = sin_cos(pitch + b.lam);
@@ -49,12 +50,14 @@ impl FullState {
     }
 
     /// The velocities, with the stored dependent ones.
+    #[inline(always)]
     pub fn velocities(&self, b: &Geometry) -> Velocities<f64> {
         velocities(&self.pose(b), &self.speeds)
     }
 
     /// Time derivative of every entry under `torques`, in the same fields. `None` if the equations are
     /// singular, which does not occur near a ride.
+    #[inline(always)]
     pub fn rate(&self, b: &Geometry, torques: &Torques<f64>) -> Option<FullState> {
         let pose = self.pose(b);
         let unit: [Velocities<f64>; 6] = std::array::from_fn(|i| {
@@ -115,42 +118,51 @@ const UNKNOWNS: usize = 9;
 /// Linear equations: in each row the coefficients, then the known side.
 type Equations = [[f64; UNKNOWNS + 1]; UNKNOWNS];
 
-/// Solves the equations by elimination with the largest pivot of each column; `None` if a pivot is zero.
+/// Solves the equations by elimination; `None` if a pivot is zero.
 ///
-/// Whole rows are combined, although the entries left of the pivot are not used again: loops of one length become vector
-/// instructions.
+/// No pivots are chosen: the part of the six speeds is a mass matrix, positive definite, and what it leaves of the constraint forces
+/// is negative definite, since the constraints are independent. Such a symmetric matrix can be eliminated in any order
+/// (Vanderbei 1995).
+#[inline(always)]
 fn solve(mut rows: Equations) -> Option<[f64; UNKNOWNS]> {
-    for i in 0..UNKNOWNS {
-        let mut largest = i;
-        for row in i + 1..UNKNOWNS {
-            if rows[row][i].abs() > rows[largest][i].abs() {
-                largest = row;
-            }
-        }
-        rows.swap(i, largest);
-        let pivot = rows[i];
-        if pivot[i] == 0.0 {
-            return None;
-        }
-        let per_pivot = 1.0 / pivot[i];
-        for row in &mut rows[i + 1..] {
-            let part = row[i] * per_pivot;
-            for (x, pivot) in row.iter_mut().zip(pivot) {
-                *x -= part * pivot;
-            }
-        }
-    }
+    let per_pivot = [
+        eliminate::<0>(&mut rows),
+        eliminate::<1>(&mut rows),
+        eliminate::<2>(&mut rows),
+        eliminate::<3>(&mut rows),
+        eliminate::<4>(&mut rows),
+        eliminate::<5>(&mut rows),
+        eliminate::<6>(&mut rows),
+        eliminate::<7>(&mut rows),
+        eliminate::<8>(&mut rows),
+    ];
     let mut solution = rows.map(|row| row[UNKNOWNS]);
     for i in (0..UNKNOWNS).rev() {
-        solution[i] /= rows[i][i];
-        let known = solution[i];
-        for (row, x) in rows.iter().zip(&mut solution[..i]) {
-            *x -= row[i] * known;
+        solution[i] *= per_pivot[i];
+        for j in 0..UNKNOWNS {
+            if j < i {
+                solution[j] -= rows[j][i] * solution[i];
+            }
         }
     }
-    Some(solution)
+    per_pivot.iter().all(|x| x.is_finite()).then_some(solution)
 }
 
+/// Eliminates the unknown `I` from the rows below. Returns the reciprocal of its pivot.
+#[inline(always)]
+fn eliminate<const I: usize>(rows: &mut Equations) -> f64 {
+    let pivot = rows[I];
+    let per_pivot = 1.0 / pivot[I];
+    for row in &mut rows[I + 1..] {
+        let part = row[I] * per_pivot;
+        for j in I + 1..=UNKNOWNS {
+            row[j] -= part * pivot[j];
+        }
+    }
+    per_pivot
+}
+
+#[inline(always)]
 fn velocities(
     pose: &Pose<f64>,
     &[roll, pitch, yaw, steer, rear_spin, front_spin]: &[f64; 6],
@@ -170,6 +182,7 @@ impl Moves for FullState {
 }
 
 /// Velocity of the material point at the front contact; the constraints make it zero.
+#[inline(always)]
 fn contact_velocity(b: &Geometry, pose: &Pose<f64>, v: &Velocities<f64>) -> Vec3<f64> {
     v.omega.cross(pose.base) - pose.e1.scaled(v.rear_spin * b.rR)
         + Vec3::new(-pose.trail.y, pose.trail.x, 0.0).scaled(v.steer)

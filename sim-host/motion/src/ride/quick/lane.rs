@@ -1,7 +1,7 @@
 //! The ride in a lane: its time, fall, amplitudes and outcome.
 
+use super::SENSITIVE_S;
 use super::forecast::{Forecast, Now};
-use super::{CLEAR, CLEAR_RIDDEN, SENSITIVE_S};
 use crate::bicycle::{FullState, State};
 use crate::ride::event::{fallen, largest_angles, time_of_fall};
 use crate::ride::{Conditions, FallCause, Outcome};
@@ -48,11 +48,12 @@ impl Lane {
         self.passed_s.is_some_and(|passed_s| self.t - passed_s > SENSITIVE_S)
     }
 
-    /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided
-    /// by the factor [`CLEAR`], or [`CLEAR_RIDDEN`] with a rider.
+    /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided by the factor
+    /// `clear`.
     pub(super) fn book(
         &mut self,
         conditions: &Conditions,
+        clear: f64,
         (before, after): (&State<f64>, &State<f64>),
         h: f64,
     ) -> Option<Option<Outcome>> {
@@ -88,7 +89,6 @@ impl Lane {
                 }
             }
         }
-        let clear = if conditions.rider.is_some() { CLEAR_RIDDEN } else { CLEAR };
         over.then(|| Outcome::of_amplitudes(conditions.recovered_below, self.late, self.peak, clear))
     }
 

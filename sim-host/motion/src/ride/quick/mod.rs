@@ -60,11 +60,14 @@ const SHORTEST_S: f64 = 1e-6;
 const NEAREST: f64 = 0.1;
 /// Steps per second of the time limit after which a ride is left to the exact method.
 const STEPS_PER_S: f64 = 2000.0;
-/// The end of a ride is decided if the late amplitude differs from the limit by this factor. Where they are near the limit, late
-/// amplitudes differ from the exact ride's by 0.002 to 0.04 % in the median and 0.8 % at most.
-const CLEAR: f64 = 1.01;
-/// The same with a rider: 1.3 % at most.
-const CLEAR_RIDDEN: f64 = 1.03;
+/// The end of a ride is decided if the late amplitude differs from the limit by this factor, in usual and in fine steps. Near the
+/// limit late amplitudes differ from the exact ride's by 0.03 % in the median, 1 in 300 by more than 1 % and 2.4 % at most; in fine
+/// steps 1 in 100 by 0.17 %, and 0.9 % at most.
+const CLEAR: [f64; 2] = [1.05, 1.005];
+/// The same of a controller that is executed in every control period: 0.03 %, 1 in 100 by 0.12 %, 0.9 % at most.
+const CLEAR_SAMPLED: [f64; 2] = [1.01; 2];
+/// The same with a rider, or with limits or delays of the torque: a few in 1000 by more than 10 %, in fine steps by more than 3 %.
+const CLEAR_ROUGH: [f64; 2] = [1.15, 1.03];
 
 /// The result of a quick ride.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,8 +92,10 @@ pub struct Quick<'a> {
     largest: f64,
     /// Largest step over more than one control period, relative to the time scale of the motion.
     extrapolated: f64,
-    /// Whether sensitive rides are ridden again.
-    again: bool,
+    /// Factor between late amplitudes and the limit that decides.
+    clear: f64,
+    /// Whether the steps are fine. Otherwise sensitive rides, and those that are not decided, are ridden again.
+    fine: bool,
 }
 
 impl<'a> Quick<'a> {
@@ -123,7 +128,8 @@ impl<'a> Quick<'a> {
         let forecast = Forecast::new(conditions, &source);
         let extrapolated = if monitored { controller::EXTRAPOLATED } else { f64::INFINITY };
         let largest = if conditions.rider.is_some() { LARGEST_RIDDEN } else { LARGEST };
-        Some(Self { conditions, source, forecast, longest_s, largest, extrapolated, again: true })
+        let [clear, _] = clear(conditions, &source);
+        Some(Self { conditions, source, forecast, longest_s, largest, extrapolated, clear, fine: false })
     }
 
     /// The same in fine steps, which narrow a border.
@@ -131,33 +137,52 @@ impl<'a> Quick<'a> {
         let sampled = self.source.sampled().is_some();
         let longest_s = if sampled { FINE_PERIODS * self.longest_s } else { self.longest_s };
         let extrapolated = FINE_PERIODS * self.extrapolated;
-        Self { largest: LARGEST_FINE, longest_s, extrapolated, again: false, ..self.clone() }
+        let [_, clear] = clear(self.conditions, &self.source);
+        Self { largest: LARGEST_FINE, longest_s, extrapolated, clear, fine: true, ..self.clone() }
+    }
+}
+
+/// The factors between late amplitudes and the limit that decide, in usual and in fine steps.
+fn clear(conditions: &Conditions, source: &Source) -> [f64; 2] {
+    let limited = source.law().is_some_and(|law| law.late.is_some() || law.limits.is_some());
+    match source {
+        _ if conditions.rider.is_some() || limited => CLEAR_ROUGH,
+        Source::Sampled(_) => CLEAR_SAMPLED,
+        _ => CLEAR,
     }
 }
 
 impl Quick<'_> {
     /// Simulates every ride; results in the order of `starts`. A ride that goes on for long after a singular configuration is
-    /// ridden again in shorter steps.
+    /// ridden again in shorter steps, one that is not decided in fine ones if that is quicker than an exact ride.
     pub fn rides(&self, starts: &[Start]) -> Vec<QuickRide> {
-        let instructions = Instructions::of_this_processor();
-        let mut done = instructions.quick_rides(self, starts);
-        if !self.again {
+        let mut done = Instructions::of_this_processor().quick_rides(self, starts);
+        if self.fine {
             return done;
         }
         let shorter = Self { largest: SHORTER * self.largest, ..self.clone() };
-        let again: Vec<usize> = (0..done.len()).filter(|&i| done[i].sensitive).collect();
-        let starts: Vec<Start> = again.iter().map(|&i| starts[i]).collect();
-        for (i, ride) in again.into_iter().zip(instructions.quick_rides(&shorter, &starts)) {
-            done[i] = QuickRide { steps: done[i].steps + ride.steps, ..ride };
+        shorter.again(starts, &mut done, |ride| ride.sensitive);
+        // A controller makes fine steps as slow as exact rides.
+        if self.source.sampled().is_none() {
+            self.fine().again(starts, &mut done, |ride| ride.outcome.is_none());
         }
         done
+    }
+
+    /// Replaces the rides that are `chosen`.
+    fn again(&self, starts: &[Start], done: &mut [QuickRide], chosen: impl Fn(&QuickRide) -> bool) {
+        let again: Vec<usize> = (0..done.len()).filter(|&i| chosen(&done[i])).collect();
+        let starts: Vec<Start> = again.iter().map(|&i| starts[i]).collect();
+        for (i, ride) in again.into_iter().zip(Instructions::of_this_processor().quick_rides(self, &starts)) {
+            done[i] = QuickRide { steps: done[i].steps + ride.steps, ..ride };
+        }
     }
 }
 
 /// Simulates every ride once; results in the order of `starts`.
 #[inline(always)]
 pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
-    let Quick { conditions, source, forecast, longest_s, largest, extrapolated, .. } = quick;
+    let Quick { conditions, source, forecast, longest_s, largest, extrapolated, clear, .. } = quick;
     let b = &conditions.bicycle;
     let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
@@ -304,7 +329,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 ride.passed_s = ride.passed_s.or(Some(ride.t));
             }
             ride.steps += 1;
-            let ended = match ride.book(conditions, (&before, &after), h) {
+            let ended = match ride.book(conditions, *clear, (&before, &after), h) {
                 None if ride.steps >= most_steps => Some(None),
                 None => {
                     let rider = riders.as_ref().map(|riders| riders.after(lane));

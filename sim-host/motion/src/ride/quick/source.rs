@@ -112,6 +112,7 @@ impl Source<'_> {
     }
 
     /// One Runge-Kutta step with six speeds, with the rider; `slope` as in [`Self::torques`].
+    #[inline(always)]
     pub(super) fn full_step(
         &self,
         conditions: &Conditions,
