@@ -120,9 +120,8 @@ type Equations = [[f64; UNKNOWNS + 1]; UNKNOWNS];
 
 /// Solves the equations by elimination; `None` if a pivot is zero.
 ///
-/// No pivots are chosen: the part of the six speeds is a mass matrix, positive definite, and what it leaves of the constraint forces
-/// is negative definite, since the constraints are independent. Such a symmetric matrix can be eliminated in any order
-/// (Vanderbei 1995).
+/// No pivots are chosen. The part of the six speeds is a mass matrix, positive definite, and what its elimination leaves of the
+/// constraint forces is negative definite, since the constraints are independent: in this order no pivot is zero.
 #[inline(always)]
 fn solve(mut rows: Equations) -> Option<[f64; UNKNOWNS]> {
     let per_pivot = [

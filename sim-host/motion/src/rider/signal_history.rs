@@ -31,7 +31,7 @@ impl SignalHistory {
         Self { delay_s, first_s, jump_s: f64::INFINITY, nodes: VecDeque::new() }
     }
 
-    /// The same of a signal that jumps at `jump_s` \[s\].
+    /// The same of a signal that jumps at once after `jump_s` \[s\].
     pub fn with_jump(self, jump_s: f64) -> Self {
         Self { jump_s, ..self }
     }
@@ -71,16 +71,23 @@ impl SignalHistory {
         if t < self.first_s - Self::SAME_S {
             return [0.0; 3];
         }
-        [0.0, 0.5, 1.0].map(|part| self.at((t + part * h - self.delay_s).max(0.0)))
+        // A step that ends with a jump is before it, one that begins with it after.
+        let before_jump = t - self.delay_s < self.jump_s - Self::SAME_S;
+        [0.0, 0.5, 1.0].map(|part| self.interpolated((t + part * h - self.delay_s).max(0.0), before_jump))
     }
 
     /// The signal at a past time \[s\], not before the oldest that is kept.
-    #[inline(always)]
     pub fn at(&self, t: f64) -> f64 {
+        self.interpolated(t, t <= self.jump_s)
+    }
+
+    /// The same from nodes before a jump or after it.
+    #[inline(always)]
+    fn interpolated(&self, t: f64, before_jump: bool) -> f64 {
         let nodes = &self.nodes;
         let Some(last) = nodes.len().checked_sub(1) else { return 0.0 };
         let after = nodes.iter().position(|node| node.0 >= t).unwrap_or(last);
-        // The kink belongs to both sides, the jump to the later one.
+        // The kink belongs to both sides, the jump to the earlier one.
         let smooth = |i: usize| {
             let node = nodes[i].0;
             let by_kink = if t < self.first_s {
@@ -88,8 +95,7 @@ impl SignalHistory {
             } else {
                 node >= self.first_s - Self::SAME_S
             };
-            let before_jump = |t: f64| t < self.jump_s - Self::SAME_S;
-            by_kink && before_jump(node) == before_jump(t)
+            by_kink && before_jump == (node < self.jump_s + Self::SAME_S)
         };
         // The usual case. The nodes are in order: between two smooth ones all are.
         if after >= 2 && after < last && smooth(after - 2) && smooth(after + 1) {

@@ -250,13 +250,15 @@ impl<'a, const N: usize> Limited<'a, N> {
         Lanes(std::array::from_fn(|i| self.lanes[i].torque(&self.limits, stage, wanted_nm.0[i])))
     }
 
-    /// The torques that the exact rides' control instants at the start of the steps give, if those of a sampled law there are
-    /// `sampled_nm`.
+    /// The torques that control instants at the starts of the steps give, if those of a law without delay are `sampled_nm`. At half
+    /// a period before the first torque, where it begins on average, there is none yet.
     pub(super) fn held(&self, t: &[Option<f64>; N], sampled_nm: Lanes<N>) -> Lanes<N> {
         Lanes(std::array::from_fn(|i| {
             let lane = &self.lanes[i];
             let wanted_nm = match (&lane.history, t[i]) {
-                (Some(history), Some(t)) => history.arriving(t + self.law.half_period_s, 0.0)[0],
+                (Some(history), Some(t)) => {
+                    history.arriving(t + self.law.half_period_s - 2.0 * SignalHistory::SAME_S, 0.0)[0]
+                }
                 _ => sampled_nm.0[i],
             };
             self.limits.delivered(self.limits.command(lane.began.0, wanted_nm, self.law.half_period_s))

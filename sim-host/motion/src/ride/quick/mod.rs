@@ -192,8 +192,12 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     let mut state = Aligned(State::upright(b, still));
     let mut initial = still;
     let mut slopes = [still; 2];
-    let law_s = source.law().and_then(|law| law.late).map_or(f64::INFINITY, |late| late.arrives_s);
-    let mut riders = conditions.rider.as_ref().map(|rider| QuickRiders::<N>::new(rider, law_s));
+    // The exact ride interpolates between the samples before and after a jump.
+    let jump_s = source
+        .law()
+        .and_then(|law| law.late)
+        .map_or(f64::INFINITY, |late| late.arrives_s - 0.5 * conditions.step_s);
+    let mut riders = conditions.rider.as_ref().map(|rider| QuickRiders::<N>::new(rider, jump_s));
     let mut controllers = source.sampled().map(|plan| Controllers::<N>::new(conditions, plan));
     let mut limited = source.law().and_then(Limited::<N>::new);
     let mut lanes: [Option<Lane>; N] = std::array::from_fn(|_| None);

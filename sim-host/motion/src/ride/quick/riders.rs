@@ -31,11 +31,11 @@ pub(super) struct QuickRiders<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> QuickRiders<'a, N> {
-    /// Beside a law whose torque begins at `law_s` \[s\]: infinite without one.
-    pub(super) fn new(rider: &'a Rider, law_s: f64) -> Self {
+    /// The signals can jump at `jump_s` \[s\]: infinite if they do not.
+    pub(super) fn new(rider: &'a Rider, jump_s: f64) -> Self {
         let fresh = RiderState::fresh();
         let delayed = rider.delay_s > 0.0;
-        let history = || SignalHistory::new(rider.delay_s).with_jump(law_s);
+        let history = || SignalHistory::new(rider.delay_s).with_jump(jump_s);
         Self {
             rider,
             start: fresh,
