@@ -89,8 +89,8 @@ impl Disturbances {
     }
 }
 
-/// A state for each gain's derivative.
-type Tangents = SMatrix<f64, STATES, GAINS>;
+/// The derivatives of each state with respect to each gain.
+type Tangents = [PerGain; STATES];
 
 /// States at the samples, from rest.
 #[derive(Clone, Debug, Default)]
@@ -115,9 +115,7 @@ impl Response {
     /// Stores the state at a sample; false if the motion is no longer bounded.
     fn store(&mut self, x: &SVector<f64, STATES>, tangents: Option<&Tangents>) -> bool {
         self.states.push([x[0], x[1], x[2]]);
-        self.tangents.extend(
-            tangents.map(|t| std::array::from_fn(|state| std::array::from_fn(|gain| t[(state, gain)]))),
-        );
+        self.tangents.extend(tangents.map(|t| [t[0], t[1], t[2]]));
         x[0].abs() < UNBOUNDED_RAD && x[1].abs() < UNBOUNDED_RAD
     }
 }
@@ -196,10 +194,10 @@ fn delayed(
     let samples = disturbances.samples.len();
     let mut response = Response::with_room(samples, tangents);
     let mut x = SVector::<f64, STATES>::zeros();
-    let mut dx = Tangents::zeros();
+    let mut dx: Tangents = [[0.0; GAINS]; STATES];
     // The neural signal at the nodes of each past interval, and its derivatives.
     let mut past = vec![SVector::<f64, NODES>::zeros(); interval.lag + 1];
-    let mut past_tangents = vec![SMatrix::<f64, NODES, GAINS>::zeros(); interval.lag + 1];
+    let mut past_tangents = vec![[[0.0; GAINS]; NODES]; interval.lag + 1];
     let mut newest = 0;
     for k in 0..samples {
         if !response.store(&x, tangents.then_some(&dx)) {
@@ -217,16 +215,15 @@ fn delayed(
                 (sources[MOTION + 2 * i], sources[MOTION + 2 * i + 1]) = (start, end);
             }
             if tangents {
-                let mut motion = SMatrix::<f64, MOTION, GAINS>::zeros();
-                motion.fixed_rows_mut::<STATES>(0).copy_from(&dx);
-                motion.fixed_rows_mut::<NODES>(STATES).copy_from(&past_tangents[older]);
-                motion.fixed_rows_mut::<NODES>(STATES + NODES).copy_from(&past_tangents[newer]);
-                dx = tangent_end * motion;
-                let mut signal = tangent_neural * motion;
-                for (i, of_sources) in interval.signals.iter().enumerate() {
-                    let fed_back = (of_sources * sources).transpose();
-                    let sum = signal.row(i) + fed_back;
-                    signal.set_row(i, &sum);
+                let mut motion = [[0.0; GAINS]; MOTION];
+                motion[..STATES].copy_from_slice(&dx);
+                motion[STATES..STATES + NODES].copy_from_slice(&past_tangents[older]);
+                motion[STATES + NODES..].copy_from_slice(&past_tangents[newer]);
+                dx = times(&tangent_end, &motion);
+                let mut signal = times(&tangent_neural, &motion);
+                for (signal, of_sources) in signal.iter_mut().zip(&interval.signals) {
+                    let fed_back = of_sources * sources;
+                    signal.iter_mut().zip(fed_back.iter()).for_each(|(sum, x)| *sum += x);
                 }
                 past_tangents[older] = signal;
             }
@@ -236,6 +233,21 @@ fn delayed(
         }
     }
     Some(response)
+}
+
+/// Product of a matrix and derivatives: all gains side by side, which the compiler makes vector instructions.
+fn times<const R: usize, const K: usize>(
+    matrix: &SMatrix<f64, R, K>,
+    derivatives: &[PerGain; K],
+) -> [PerGain; R] {
+    std::array::from_fn(|row| {
+        let mut sum = [0.0; GAINS];
+        for (column, derivative) in derivatives.iter().enumerate() {
+            let factor = matrix[(row, column)];
+            sum.iter_mut().zip(derivative).for_each(|(sum, x)| *sum += factor * x);
+        }
+        sum
+    })
 }
 
 /// Sources of an interval without the disturbances.
@@ -286,7 +298,7 @@ fn undelayed(
     let samples = disturbances.samples.len();
     let mut response = Response::with_room(samples, tangents);
     let mut x = SVector::<f64, STATES>::zeros();
-    let mut dx = Tangents::zeros();
+    let mut dx: Tangents = [[0.0; GAINS]; STATES];
     for k in 0..samples {
         if !response.store(&x, tangents.then_some(&dx)) {
             return None;
@@ -298,10 +310,10 @@ fn undelayed(
             sources[STATES + 2 * i + 1] = (end - start) / sample_s;
         }
         if tangents {
-            dx = free * dx;
+            dx = times(&free, &dx);
             for (gain, map) in driven.iter().enumerate() {
-                let sum = dx.column(gain) + map * sources;
-                dx.set_column(gain, &sum);
+                let by_signal = map * sources;
+                dx.iter_mut().zip(by_signal.iter()).for_each(|(of_state, x)| of_state[gain] += x);
             }
         }
         x = end * sources;
