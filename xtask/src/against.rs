@@ -110,9 +110,14 @@ fn table(commit: &str, programs: &[PathBuf; 2], runs: usize, place: &Path) -> Re
 /// Processor time of a run \[s\], or its duration where the system does not report the former.
 fn timed(program: &Path, arguments: &[&str], place: &Path) -> Result<f64> {
     let (before, begun) = (process::processor_s(), Instant::now());
+    // A study continues what an earlier run left in its folder: each run has its own.
+    let folder = place.join("run");
+    std::fs::create_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
     let mut command = Command::new(program);
-    command.current_dir(place).args(arguments).env("RAYON_NUM_THREADS", "1");
-    let outcome = capture(&mut command, RUN)?;
+    command.current_dir(&folder).args(arguments).env("RAYON_NUM_THREADS", "1");
+    let outcome = capture(&mut command, RUN);
+    std::fs::remove_dir_all(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let outcome = outcome?;
     if outcome.status != Some(0) {
         return Err(format!("{command:?} failed\n{}", outcome.stderr));
     }

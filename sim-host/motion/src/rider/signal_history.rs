@@ -67,6 +67,7 @@ impl SignalHistory {
 
     /// The signals that arrive at start, middle and end of the step of `h` seconds from `t`, the time of the latest signal;
     /// zero before the first one arrives.
+    #[inline(always)]
     pub fn arriving(&self, t: f64, h: f64) -> [f64; 3] {
         if t < self.first_s - Self::SAME_S {
             return [0.0; 3];

@@ -266,12 +266,13 @@ fn confirmed<L: Fn(f64) -> Start>(
             false => contradicting.push((line, rate)),
         }
     }
-    for (&(line, rate), ride) in contradicting.iter().zip(exact(conditions, &mut lines, &contradicting)) {
+    // All exact rides at once, so that they fill the lanes.
+    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fallen).chain(&contradicting).copied().collect();
+    let mut safe_rides = exact(conditions, &mut lines, &wanted);
+    let mut fallen_rides = safe_rides.split_off(safe.len());
+    for (&(line, rate), ride) in contradicting.iter().zip(fallen_rides.split_off(fallen.len())) {
         lines[line].corrected(rate, ride.outcome);
     }
-    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fallen).copied().collect();
-    let mut safe_rides = exact(conditions, &mut lines, &wanted);
-    let fallen_rides = safe_rides.split_off(safe.len());
     let (mut safe_rides, mut fallen_rides) = (safe_rides.into_iter(), fallen_rides.into_iter());
     // The ends of the edges of each line, and without edges the ride of the largest disturbance.
     let mut ends: Vec<(Vec<Ends>, Option<Ride>)> = Vec::new();

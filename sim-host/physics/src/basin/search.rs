@@ -37,7 +37,7 @@ impl Axis {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// Long steps find the borders and exact rides confirm them, if law and rider are all that acts; else as plain.
+    /// Long steps find the borders and exact rides confirm them, if no more acts than controller, constant delays and rider; else as plain.
     #[default]
     Fast,
     /// Every ride exact and to its end.

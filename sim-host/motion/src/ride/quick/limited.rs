@@ -1,7 +1,7 @@
 //! A law in continuous time whose torque arrives late and is limited: in its magnitude, in its change, and by the motor.
 //!
-//! A delay of whole control periods acts on the law's torque, which is stored at the starts of the steps. The limits act on what
-//! arrives; with the delay of a motor behind them they would act earlier by that delay, with the same result.
+//! A delay of whole control periods acts on the law's torque, which is stored at the starts of the steps; the limits act on what
+//! arrives. A motor's delay lies behind the limits, but constant limits give the same torque in either order.
 
 use crate::integrate::STAGES;
 use crate::num::Lanes;
@@ -106,6 +106,7 @@ impl TorqueLimits {
 
     /// The command `elapsed_s` after it was `began_nm`, if the law's torque is `wanted_nm` \[N m\]. The limiter of the control
     /// crate in continuous time: a torque that changes sign first falls to zero.
+    #[inline(always)]
     fn command(&self, began_nm: f64, wanted_nm: f64, elapsed_s: f64) -> f64 {
         let wanted = wanted_nm.max(-self.largest_nm).min(self.largest_nm);
         if self.slower_nm_s() >= UNLIMITED_NM_S {
@@ -133,6 +134,7 @@ impl TorqueLimits {
     }
 
     /// The motor's torque by the command \[N m\].
+    #[inline(always)]
     fn delivered(&self, command_nm: f64) -> f64 {
         (self.scale * command_nm).max(-self.delivered_nm).min(self.delivered_nm)
     }
@@ -246,6 +248,7 @@ impl<'a, const N: usize> Limited<'a, N> {
     }
 
     /// The motor's torques at a stage of the steps, where the law's torques are `wanted_nm`.
+    #[inline(always)]
     pub(super) fn torques(&mut self, stage: usize, wanted_nm: Lanes<N>) -> Lanes<N> {
         Lanes(std::array::from_fn(|i| self.lanes[i].torque(&self.limits, stage, wanted_nm.0[i])))
     }
@@ -318,6 +321,7 @@ impl LimitedLane {
     }
 
     /// The motor's torque at a stage, where the law's torque is `wanted_nm`.
+    #[inline(always)]
     fn torque(&mut self, limits: &TorqueLimits, stage: usize, wanted_nm: f64) -> f64 {
         let part = STAGES[stage];
         let wanted_nm = if self.history.is_some() { self.wanted[(2.0 * part) as usize] } else { wanted_nm };
