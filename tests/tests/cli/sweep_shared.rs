@@ -17,7 +17,10 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 const FORTY: &str = "sweep --over torque-limit=0.5:20/log20 --over law=h,f --speeds 4:5:0.5 --max-rate 10 \
                      --scan-step 1 --tolerance 0.5 --time-limit 1 --threads 1 -q";
 /// One cell of eighty columns.
-const ONE_CELL: &str = "sweep --over law=h --speeds 3:6.95:0.05 --max-rate 10 --scan-step 0.5 --tolerance 0.05 \
+const EIGHTY: &str =
+    "sweep --over law=h --speeds 3:6.95:0.05 --max-rate 10 --scan-step 0.5 --tolerance 0.05 --threads 1 -q";
+/// One cell of 400 columns.
+const ONE_CELL: &str = "sweep --over law=h --speeds 3:6.99:0.01 --max-rate 10 --scan-step 0.5 --tolerance 0.05 \
                         --threads 1 -q";
 
 fn spawn(bench: &Bench, line: &str) -> Child {
@@ -328,7 +331,7 @@ fn a_wait_for_others_is_told() {
     assert!(text.contains("1 running") && text.contains(" s in the future"), "{text}");
 }
 
-/// Situation: one cell of eighty columns.
+/// Situation: one cell of 400 columns.
 /// Action: SIGTERM after the first columns; change a kept column; continue.
 /// Must hold: exit code 130, the finished columns are kept with the released claim; the changed column appears in the
 /// result, so it was not computed again; without the change the bytes are those of one run.
@@ -344,7 +347,7 @@ fn columns_of_an_interrupted_cell_are_kept() {
     let name = names(&bench, "s/claims").remove(0);
     let claim = read_claim(&bench, "s", &name);
     let kept = claim.columns.len();
-    assert!((1..80).contains(&kept), "{kept}");
+    assert!((1..400).contains(&kept), "{kept}");
     assert_eq!((claim.worker.clone(), claim.error.clone()), (None, None));
     let found = status(&bench, "s");
     assert_eq!((&found["done"], &found["free"]), (&json!(0), &json!(1)));
@@ -356,7 +359,7 @@ fn columns_of_an_interrupted_cell_are_kept() {
         must(&bench, &format!("{ONE_CELL} --out s"));
         let document: Value = serde_json::from_str(&bench.read("s/sweep.json")).unwrap();
         let heights = document["cells"][0]["found"].as_array().unwrap();
-        assert_eq!(heights.len(), 80);
+        assert_eq!(heights.len(), 400);
         assert_eq!(heights[changed.columns[0].speed]["height"] == 7.0625, is_changed);
     }
     must(&bench, &format!("{ONE_CELL} --out one"));
@@ -400,7 +403,7 @@ fn a_cell_without_space_on_the_disk_is_no_free_cell() {
         eprintln!("skipped: no right to mount a small file system");
         return;
     };
-    let mut child = spawn(&bench, &format!("{ONE_CELL} --out disk/s"));
+    let mut child = spawn(&bench, &format!("{EIGHTY} --out disk/s"));
     until_done(&mut child, "a claim", |_| (!names(&bench, "disk/s/claims").is_empty()).then_some(()));
     let full = std::fs::write(bench.path("disk/filler"), vec![0; 1 << 20]);
     assert_eq!(full.map_err(|e| e.kind()), Err(std::io::ErrorKind::StorageFull));
@@ -416,8 +419,8 @@ fn a_cell_without_space_on_the_disk_is_no_free_cell() {
     let text = must(&bench, "sweep --status disk/s");
     assert!(text.contains("1 failed, 0 free") && text.contains("No space left"), "{text}");
     std::fs::remove_file(bench.path("disk/filler")).unwrap();
-    must(&bench, &format!("{ONE_CELL} --out disk/s"));
-    must(&bench, &format!("{ONE_CELL} --out one"));
+    must(&bench, &format!("{EIGHTY} --out disk/s"));
+    must(&bench, &format!("{EIGHTY} --out one"));
     assert!(finished(&bench, "disk/s") == finished(&bench, "one"));
     drop(disk);
 }
