@@ -100,7 +100,7 @@ impl SignalHistory {
         };
         // The usual case. The nodes are in order: between two smooth ones all are.
         if after >= 2 && after < last && smooth(after - 2) && smooth(after + 1) {
-            return cubic(std::array::from_fn(|i| nodes[after - 2 + i]), t);
+            return lagrange(&std::array::from_fn::<_, 4, _>(|i| nodes[after - 2 + i]), t);
         }
         let lowest =
             (after.saturating_sub(4)..after).rev().take_while(|&i| smooth(i)).last().unwrap_or(after);
@@ -108,28 +108,19 @@ impl SignalHistory {
         let highest = highest.unwrap_or(after.saturating_sub(1).max(lowest));
         let from = after.saturating_sub(2).max(lowest).min((highest + 1).saturating_sub(4).max(lowest));
         let to = highest.min(from + 3);
-        // Lagrange interpolation.
-        let mut sum = 0.0;
-        for (j, &(at, signal)) in nodes.range(from..=to).enumerate() {
-            let (mut above, mut below) = (signal, 1.0);
-            for (k, &(other, _)) in nodes.range(from..=to).enumerate() {
-                if k != j {
-                    (above, below) = (above * (t - other), below * (at - other));
-                }
-            }
-            sum += above / below;
-        }
-        sum
+        let mut some = [(0.0, 0.0); 4];
+        some.iter_mut().zip(nodes.range(from..=to)).for_each(|(to, node)| *to = *node);
+        lagrange(&some[..=to - from], t)
     }
 }
 
-/// The cubic through four nodes, by Lagrange's interpolation as above.
+/// The polynomial through some nodes, by Lagrange's interpolation.
 #[inline(always)]
-fn cubic(nodes: [(f64, f64); 4], t: f64) -> f64 {
+fn lagrange(nodes: &[(f64, f64)], t: f64) -> f64 {
     let mut sum = 0.0;
-    for (j, (at, signal)) in nodes.into_iter().enumerate() {
+    for (j, &(at, signal)) in nodes.iter().enumerate() {
         let (mut above, mut below) = (signal, 1.0);
-        for (k, (other, _)) in nodes.into_iter().enumerate() {
+        for (k, &(other, _)) in nodes.iter().enumerate() {
             if k != j {
                 (above, below) = (above * (t - other), below * (at - other));
             }
