@@ -99,11 +99,12 @@ pub struct Quick<'a> {
 }
 
 impl<'a> Quick<'a> {
-    /// Quick rides under these conditions. `None` if more acts than controller and rider: errors or delays of sensors and
-    /// motor, friction or an end-stop; or if the rider needs steps that are hardly longer than the exact ride's.
+    /// Quick rides under these conditions. `None` if more acts than controller, constant delays and rider: errors of sensors, a
+    /// motor with a lag or a voltage, friction or an end-stop; or if a delay needs steps that are hardly longer than the exact ride's.
     ///
-    /// A law that is sampled and held is the continuous law, delayed by half a control period. A controller with any other
-    /// function is executed in every control period.
+    /// A law that is sampled and held is the continuous law, delayed by half a control period; constant limits and delays act in
+    /// continuous time, too. A controller with any other function is executed in every control period, with sensors and a motor that
+    /// are exact and not late.
     pub fn new(conditions: &'a Conditions) -> Option<Self> {
         let actuator = &conditions.plant.actuator;
         let source = Source::new(conditions);
