@@ -43,6 +43,7 @@ pub mod report;
 pub mod rider_record;
 pub mod scenario;
 pub mod sensor_fit;
+pub mod simplex;
 pub mod study;
 pub mod sweep;
 pub mod thesis;

@@ -3,13 +3,11 @@
 
 use super::knots::{GAINS, Knots, roughness};
 use crate::basin::Search;
+use crate::simplex::{self, Corner};
 use crate::study::trial::{Least, Trial, TrialError, least_area};
 use crate::sweep::SweepError;
-use argmin::core::{CostFunction, Error, Executor};
-use argmin::solver::neldermead::NelderMead;
 use control::Law;
 use control::param::ParamError;
-use std::cell::RefCell;
 
 /// Settings of a search.
 #[derive(Clone, Debug)]
@@ -71,9 +69,6 @@ pub enum DesignError {
     /// A gain is outside the range of a law.
     #[error(transparent)]
     Gain(#[from] ParamError),
-    /// The optimiser failed.
-    #[error("the search failed")]
-    Optimiser(#[source] Error),
 }
 
 /// Initial steps of the simplex at the start law \[N m s/rad\].
@@ -97,40 +92,32 @@ pub fn optimise(
     advanced: &dyn Fn(Progress),
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Found>, DesignError> {
-    let search_state = RefCell::new(SearchState {
-        trials,
-        plan,
-        advanced,
-        stop,
-        worst: 0,
-        found: None,
-        failed: None,
-        ended: false,
-    });
+    let mut search =
+        SearchState { trials, plan, advanced, stop, worst: 0, found: None, failed: None, ended: false };
     let mut random = SplitMix(plan.seed);
     let mut corner = plan.knots.gains_of(&plan.start);
     let mut steps = vec![FIRST_STEP; corner.len()];
-    while !search_state.borrow().ended {
-        let simplex = simplex(&corner, &steps);
-        let solver = NelderMead::new(simplex).with_sd_tolerance(ALIKE).map_err(DesignError::Optimiser)?;
-        // An error ends the search; its result so far stays in `search_state`.
-        let run = Executor::new(Objective(&search_state), solver).ctrlc(false).timer(false).run();
-        if let Err(error) = run
-            && !search_state.borrow().ended
-        {
-            return Err(DesignError::Optimiser(error));
-        }
-        if let Some(found) = &search_state.borrow().found {
+    while !search.ended {
+        // The best schedule of all simplexes is kept in `search`.
+        let _ = simplex::search(first_simplex(&corner, &steps), |gains| search.cost(gains), alike);
+        if let Some(found) = &search.found {
             corner.clone_from(&found.gains);
         }
         steps.iter_mut().for_each(|step| *step = random.step());
     }
-    let SearchState { found, failed, .. } = search_state.into_inner();
-    failed.map_or(Ok(found), Err)
+    search.failed.map_or(Ok(search.found), Err)
+}
+
+/// Whether the standard deviation of the costs is below that of a simplex to be restarted.
+fn alike(corners: &[Corner]) -> bool {
+    let costs = || corners.iter().map(|corner| corner.1);
+    let mean = costs().sum::<f64>() / corners.len() as f64;
+    let squares: f64 = costs().map(|cost| (cost - mean).powi(2)).sum();
+    (squares / (corners.len() - 1) as f64).sqrt() < ALIKE
 }
 
 /// A simplex of `corner` and one step along each axis, reversed if it would leave the range.
-fn simplex(corner: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
+fn first_simplex(corner: &[f64], steps: &[f64]) -> Vec<Vec<f64>> {
     let mut simplex = vec![corner.to_vec()];
     for (i, step) in steps.iter().enumerate() {
         let mut other = corner.to_vec();
@@ -210,20 +197,6 @@ impl SearchState<'_> {
         if let Some(found) = &mut self.found {
             found.complete = complete;
         }
-    }
-}
-
-/// The search as the library's objective.
-struct Objective<'a, 'b>(&'a RefCell<SearchState<'b>>);
-
-impl CostFunction for Objective<'_, '_> {
-    type Param = Vec<f64>;
-    type Output = f64;
-
-    fn cost(&self, gains: &Vec<f64>) -> Result<f64, Error> {
-        // Minus infinity is the library's target and stops it. An error can't be returned while it shrinks a
-        // simplex.
-        Ok(self.0.borrow_mut().cost(gains).unwrap_or(f64::NEG_INFINITY))
     }
 }
 

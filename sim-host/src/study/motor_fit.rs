@@ -3,7 +3,7 @@
 use super::published_weave::{Weave, weave};
 use crate::bicycle::Parameters;
 use crate::eigen::LinearActuator;
-use crate::thesis::nelder_mead::minimum;
+use crate::simplex::minimum;
 use nalgebra::Complex;
 
 /// A free parameter of the fit.

@@ -1,6 +1,6 @@
 //! Fits of a damped oscillation to a response (appendix C).
 
-use super::nelder_mead::minimum;
+use crate::simplex::minimum;
 use nalgebra::{Matrix3, Vector3};
 use std::ops::RangeInclusive;
 

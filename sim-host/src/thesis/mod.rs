@@ -25,7 +25,6 @@ pub mod heights;
 mod html;
 pub mod item;
 pub mod matrix_pencil;
-pub mod nelder_mead;
 pub mod published;
 mod reductions;
 pub mod run;

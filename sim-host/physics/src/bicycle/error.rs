@@ -223,6 +223,9 @@ pub enum FormatError {
         /// The parser's message.
         reason: String,
     },
+    /// A set in YAML, which only a build with the feature `yaml` reads.
+    #[error("this build reads no YAML: build sim-host with `--features full`")]
+    NoYaml,
     /// A line without a key and a value.
     #[error("line {line}: `{text}`: expected KEY = VALUE")]
     Line {

@@ -16,7 +16,7 @@ pub(super) fn table(text: &str, path: &Path) -> Result<Table, FormatError> {
     let ending = path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase());
     match ending.as_str() {
         "txt" | "ini" => lines(text),
-        "yml" | "yaml" => set(serde_saphyr::from_str(text).map_err(|e| invalid("YAML", &e))?),
+        "yml" | "yaml" => set(yaml(text)?),
         "json" => {
             let all: BTreeMap<String, serde_json::Value> =
                 serde_json::from_str(text).map_err(|e| invalid("JSON", &e))?;
@@ -24,6 +24,16 @@ pub(super) fn table(text: &str, path: &Path) -> Result<Table, FormatError> {
         }
         _ => toml::from_str(text).map_err(|e| invalid("TOML", &e)),
     }
+}
+
+#[cfg(feature = "yaml")]
+fn yaml(text: &str) -> Result<BTreeMap<String, Option<Value>>, FormatError> {
+    serde_saphyr::from_str(text).map_err(|e| invalid("YAML", &e))
+}
+
+#[cfg(not(feature = "yaml"))]
+fn yaml(_: &str) -> Result<BTreeMap<String, Option<Value>>, FormatError> {
+    Err(FormatError::NoYaml)
 }
 
 fn invalid(format: &'static str, error: &dyn std::fmt::Display) -> FormatError {

@@ -38,5 +38,4 @@ pub use objective::Drift;
 pub use pipeline::{IMPULSE_RESPONSE_S, Identified, Plan, Stage, identify};
 pub use record::{Measured, Record};
 pub use reduction::{Criteria, Select, Step, reduce};
-pub use residuals::{NORMAL_95, autocorrelation, cross_correlation, independent_band, white_band};
 pub use response::{Disturbances, Hold, Signal};

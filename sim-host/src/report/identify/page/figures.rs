@@ -1,11 +1,12 @@
 //! Figures over time, of the residuals' correlations and of the impulse responses.
 
 use super::paragraph;
-use crate::identify::{
-    Fir, Identified, Signal, autocorrelation, cross_correlation, independent_band, white_band,
-};
+use crate::identify::{Fir, Identified, Signal};
 use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series, chart};
 use crate::report::html::figure;
+use crate::report::identify::correlation::{
+    autocorrelation, cross_correlation, independent_band, white_band,
+};
 use crate::report::identify::plots::{Course, Input, inputs, of_signal};
 use std::ops::Range;
 

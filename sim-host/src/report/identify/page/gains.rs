@@ -1,8 +1,9 @@
 //! The selected gains, and those that the record does not determine.
 
 use super::{list, number, paragraph};
-use crate::identify::{Identified, NORMAL_95, symbols};
+use crate::identify::{Identified, symbols};
 use crate::report::html::table;
+use crate::report::identify::correlation::NORMAL_95;
 use crate::report::identify::document::IdentifyDocument;
 use crate::report::identify::text::percent;
 
