@@ -7,6 +7,7 @@
 use super::Remark;
 use super::frames::{Frames, Id, MOST_BYTES};
 use super::remarks::Remarks;
+use chrono::NaiveDate;
 use std::io::Read;
 
 /// First bytes of an object.
@@ -243,12 +244,11 @@ fn later(bytes: &[u8]) -> &[u8] {
 
 /// Start of the measurement \[s since 1970\]; 0 without a date.
 fn start_s(bytes: &[u8]) -> f64 {
-    let field = |i: usize| number(bytes, 40 + 2 * i, 2).and_then(|n| i16::try_from(n).ok()).unwrap_or(0);
-    let small = |i| i8::try_from(field(i)).unwrap_or(0);
-    let nanosecond = i32::from(field(7)).saturating_mul(1_000_000);
-    jiff::civil::DateTime::new(field(0), small(1), small(3), small(4), small(5), small(6), nanosecond)
-        .and_then(|start| start.to_zoned(jiff::tz::TimeZone::UTC))
-        .map_or(0.0, |start| start.timestamp().as_millisecond() as f64 * 1e-3)
+    let field = |i: usize| number(bytes, 40 + 2 * i, 2).and_then(|n| u32::try_from(n).ok()).unwrap_or(0);
+    let year = i32::try_from(field(0)).unwrap_or(0);
+    NaiveDate::from_ymd_opt(year, field(1), field(3))
+        .and_then(|date| date.and_hms_milli_opt(field(4), field(5), field(6), field(7)))
+        .map_or(0.0, |start| start.and_utc().timestamp_millis() as f64 * 1e-3)
 }
 
 /// The little-endian number of `size` bytes at `place`; `None` beyond the end.

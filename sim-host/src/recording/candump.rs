@@ -8,6 +8,7 @@
 use super::Remark;
 use super::frames::{Frames, Id, MOST_BYTES};
 use super::remarks::Remarks;
+use super::stamp::date_time;
 
 /// Lines at the beginning of a file among which the first whole one is searched.
 const HEAD_LINES: usize = 50;
@@ -112,12 +113,7 @@ const MOST_S: f64 = 1e11;
 /// A time stamp in seconds, from a number or a date.
 fn seconds(stamp: &str) -> Option<f64> {
     let number = || stamp.parse::<f64>().ok().filter(|s| s.abs() <= MOST_S && !stamp.contains(['e', 'E']));
-    let date = || {
-        let time: jiff::civil::DateTime = stamp.parse().ok().filter(|_| stamp.contains(':'))?;
-        let time = time.to_zoned(jiff::tz::TimeZone::UTC).ok()?;
-        Some(time.timestamp().as_nanosecond() as f64 * 1e-9)
-    };
-    number().or_else(date)
+    number().or_else(|| date_time(stamp))
 }
 
 /// The identifier's number and flags; 3 digits mean 11 bits, 8 digits 29 bits.
