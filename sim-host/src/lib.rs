@@ -32,6 +32,7 @@ pub mod board;
 pub mod cli;
 pub mod closed_loop;
 pub mod commands;
+mod counted;
 pub mod design;
 #[cfg(feature = "fmu")]
 pub mod fmu;

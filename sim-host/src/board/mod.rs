@@ -3,7 +3,6 @@
 pub mod broadcast;
 pub mod causes;
 pub mod client;
-pub mod counted;
 pub mod exception;
 pub mod fault;
 pub mod monitor;

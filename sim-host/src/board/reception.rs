@@ -1,6 +1,6 @@
 //! Counts of what was received from a board, whole, damaged or unknown.
 
-use super::counted::counted;
+use crate::counted::counted;
 use schemars::JsonSchema;
 use serde::Serialize;
 

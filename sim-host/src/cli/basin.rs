@@ -14,6 +14,7 @@ use crate::basin::{Basin, Column, Search, Work};
 use crate::bicycle::linear::Linear;
 use crate::commands::basin::{BasinTask, Searched};
 use crate::commands::{Hooks, Setup};
+use crate::counted::counted;
 use crate::eigen::critical_speeds;
 use crate::report::figure::{self, Band, BasinFigure};
 use crate::report::{netcdf, table, terminal};
@@ -225,9 +226,10 @@ fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -
     }
     let _ = writeln!(
         text,
-        "{rides} rides, {right_hand_sides} right-hand sides, {seconds:.2} s ({:.0} ns each on {} threads)",
+        "{}, {right_hand_sides} right-hand sides, {seconds:.2} s ({:.0} ns each on {})",
+        counted(rides, "ride", "rides"),
         seconds * 1e9 / right_hand_sides.max(1) as f64,
-        rayon::current_num_threads()
+        counted(rayon::current_num_threads(), "thread", "threads")
     );
     text
 }

@@ -1,8 +1,8 @@
 //! A board's state as text, as the link reports it.
 
 use crate::board::causes::{limits, named};
-use crate::board::counted::counted;
 use crate::board::monitor::Monitor;
+use crate::counted::counted;
 use control::sensors::polarity::PolarityStep;
 use control::{ActiveLimits, Cause, Causes, Sample};
 use link::telemetry::Telemetry;

@@ -6,6 +6,7 @@ use super::outputs::{complain, print};
 use super::scenario_error::named;
 use super::{Ended, Failure, pil_basin, ride};
 use crate::commands::ride::{Ridden, check_direction, start};
+use crate::counted::counted;
 use crate::pil::Controller;
 use crate::pil::compare::{Recorder, same_ride};
 use crate::pil::qemu::Qemu;
@@ -122,8 +123,9 @@ fn tally(controller: &Controller<Qemu>, seconds: f64) -> String {
     if tally.missed > 0 || tally.restarts > 0 {
         let _ = writeln!(
             text,
-            "the board missed {} control steps, its chip restarted {} times",
-            tally.missed, tally.restarts
+            "the board missed {}, its chip restarted {}",
+            counted(tally.missed, "control step", "control steps"),
+            counted(tally.restarts, "time", "times")
         );
         complain(&format!("note: output of the board:\n{}", controller.board.output()));
     }

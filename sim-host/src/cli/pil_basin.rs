@@ -9,6 +9,7 @@ use super::scenario_error::named;
 use super::{Ended, Failure, interrupt};
 use crate::basin::{Method, Search, basin, basin_by};
 use crate::commands::basin::Searched;
+use crate::counted::counted;
 use crate::pil::compare::same_basin;
 use crate::pil::qemu::Qemu;
 use crate::pil::{Controller, Tally};
@@ -76,7 +77,10 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         let here = pool.install(|| basin(&setup.conditions, &done, |_| (), || false))?;
         same = same_basin(&here, &result);
         if same.is_ok() {
-            text += &format!("the same bits as in this program: {} speeds\n", result.columns.len());
+            text += &format!(
+                "the same bits as in this program: {}\n",
+                counted(result.columns.len(), "speed", "speeds")
+            );
         }
     }
     let ended =
@@ -90,8 +94,8 @@ fn tally(boards: &[Controller<Qemu>], seconds: f64) -> String {
     let sum = |of: fn(Tally) -> u64| boards.iter().map(|board| of(board.tally())).sum::<u64>();
     let (steps, affected) = (sum(|t| t.steps), sum(|t| t.affected));
     let mut text = format!(
-        "{} boards: {steps} control steps, {:.1} times as fast as in real time\n",
-        boards.len(),
+        "{}: {steps} control steps, {:.1} times as fast as in real time\n",
+        counted(boards.len(), "board", "boards"),
         steps as f64 * 1e-3 / seconds
     );
     if affected > 0 {

@@ -10,6 +10,7 @@ use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
 use crate::basin::Plane;
 use crate::commands::{Hooks, plane};
+use crate::counted::counted;
 use crate::report::figure::{self, PlaneFigure};
 use crate::report::plane::{PlaneDocument, plane_rows};
 use crate::report::{netcdf, table};
@@ -112,11 +113,11 @@ fn summary(document: &PlaneDocument, plane: &Plane) -> String {
     }
     let _ = writeln!(
         text,
-        "{} rays, {} with islands beyond, {} without a fall to their end; {} rides, {:.2} s",
-        plane.rays.len(),
+        "{}, {} with islands beyond, {} without a fall to their end; {}, {:.2} s",
+        counted(plane.rays.len(), "ray", "rays"),
         count(|ray| !ray.column.islands.is_empty()),
         count(|ray| ray.column.capped),
-        document.work.rides,
+        counted(document.work.rides, "ride", "rides"),
         document.seconds
     );
     text

@@ -2,6 +2,7 @@
 
 use super::outputs::{print, write_json};
 use super::{Ended, Failure};
+use crate::counted::counted;
 use crate::report::output::Output;
 use crate::report::rider::{FitEntry, RiderDocument, gain_rows, standard_errors};
 use crate::report::table;
@@ -95,18 +96,13 @@ pub(super) fn run(command: &Command) -> Result<Ended, Failure> {
     Ok(Ended::Done)
 }
 
-/// A number with its noun: "1 set", "2 sets".
-fn counted(n: usize, thing: &str) -> String {
-    format!("{n} {thing}{}", if n == 1 { "" } else { "s" })
-}
-
 /// Sets, groups, speeds, delay and neuromuscular dynamics in a line.
 fn summary(t: &RiderTable) -> String {
     let (first, last) = (&t.rows[0], &t.rows[t.rows.len() - 1]);
     format!(
         "{} in {}, {} to {} m/s, delay {} ms, muscles {:.3} rad/s, {:.3}",
-        counted(t.rows.len(), "set"),
-        counted(t.groups().count(), "group"),
+        counted(t.rows.len(), "set", "sets"),
+        counted(t.groups().count(), "group", "groups"),
         first.speed_m_s,
         last.speed_m_s,
         (t.delay_s * 1e9).round() / 1e6,

@@ -8,6 +8,7 @@ use super::threads::ThreadArgs;
 use super::{Ended, Failure, UsageError, interrupt, sweep_status};
 use crate::basin::{Bound, border};
 use crate::commands::sweep::{SweepTask, sweep as resolve};
+use crate::counted::counted;
 use crate::report::output::Output;
 use crate::scenario::Scenario;
 use crate::scenario::setting::Given;
@@ -184,7 +185,11 @@ fn summary(grid: &Grid, document: &SweepDocument, folder: &Path) -> String {
     if !document.complete {
         return format!("{} of {all} cells are in {folder}; the rest is missing\n", document.cells.len());
     }
-    let mut text = format!("{all} cells, {} rides; results in {folder}\n", document.work.rides);
+    let mut text = format!(
+        "{}, {}; results in {folder}\n",
+        counted(all, "cell", "cells"),
+        counted(document.work.rides, "ride", "rides")
+    );
     let (name, unit) = if grid.one_speed() { ("height", "rad/s") } else { ("area", "rad m/s^2") };
     let measured = grid.measures().into_iter().enumerate().filter_map(|(i, m)| Some((i, m?)));
     let measured: Vec<(usize, (f64, Bound))> = measured.collect();
@@ -248,12 +253,13 @@ fn dry_run(resolved: &SweepTask, mine: &[usize], out: &Path, threads: usize) -> 
     let columns = to_do.len() * speeds.len();
     let _ = writeln!(
         text,
-        "{} of {} cells to do, {} speeds each: about {} on {threads} threads ({} columns timed)",
+        "{} of {} to do, {} each: about {} on {} ({} timed)",
         to_do.len(),
-        mine.len(),
-        speeds.len(),
+        counted(mine.len(), "cell", "cells"),
+        counted(speeds.len(), "speed", "speeds"),
         duration(each * columns as f64 / threads as f64),
-        timed.len()
+        counted(threads, "thread", "threads"),
+        counted(timed.len(), "column", "columns")
     );
     print(&text)?;
     Ok(Ended::Done)

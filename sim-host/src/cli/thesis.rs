@@ -2,6 +2,7 @@
 
 use super::outputs::{complain, print};
 use super::{Ended, Failure, interrupt};
+use crate::counted::counted;
 use crate::thesis::catalogue::{CATALOGUE, Entry, Made, selected};
 use crate::thesis::document::ThesisDocument;
 use crate::thesis::run::{Progress, run as compute, work};
@@ -107,11 +108,11 @@ fn summary(document: &ThesisDocument) -> String {
     let starts = |word: &str| printed().filter(|v| v.explanation.starts_with(word)).count();
     let close = printed().filter(|v| v.difference_percent.is_some() && v.explanation.is_empty()).count();
     format!(
-        "{} items in {:.1} s, {} not computable; {} printed numbers: {close} within 2 %, the rounding or the bound of the print, {} explained, {} unexplained\n",
-        items("computed"),
+        "{} in {:.1} s, {} not computable; {}: {close} within 2 %, the rounding or the bound of the print, {} explained, {} unexplained\n",
+        counted(items("computed"), "item", "items"),
         document.seconds,
         items("unavailable"),
-        printed().count(),
+        counted(printed().count(), "printed number", "printed numbers"),
         starts("explained"),
         starts("unexplained"),
     )

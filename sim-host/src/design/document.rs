@@ -2,6 +2,7 @@
 
 use super::{Evaluation, Found, Plan, Scenarios};
 use crate::basin::Bound;
+use crate::counted::counted;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::report::resolved::ResolvedSearch;
 use crate::report::tool::{SCHEMA, Tool};
@@ -162,8 +163,8 @@ impl DesignDocument {
     /// The result as text.
     pub fn summary(&self) -> String {
         let mut text = format!(
-            "{} schedules tried, least area {}{:.3} rad m/s^2 (coarse; {} has {}{:.3})\n",
-            self.evaluations,
+            "{} tried, least area {}{:.3} rad m/s^2 (coarse; {} has {}{:.3})\n",
+            counted(self.evaluations, "schedule", "schedules"),
             Bound::of(self.worst_area_capped).sign(),
             self.worst_area,
             self.start,
@@ -227,8 +228,11 @@ fn points(law: &Law) -> Vec<(f32, f32)> {
 pub fn law_file(d: &Design) -> String {
     let Tool { name, version, commit } = Tool::this();
     let source = format!(
-        "{name} {version} commit {commit}: design, seed {}, {} schedules tried from {}, least area {:.3} rad m/s^2",
-        d.plan.seed, d.found.evaluations, d.start, d.found.worst_area
+        "{name} {version} commit {commit}: design, seed {}, {} tried from {}, least area {:.3} rad m/s^2",
+        d.plan.seed,
+        counted(d.found.evaluations, "schedule", "schedules"),
+        d.start,
+        d.found.worst_area
     );
     let (speeds, gains): (Vec<f32>, Vec<f32>) = points(d.law).into_iter().unzip();
     let source = toml::Value::from(source);

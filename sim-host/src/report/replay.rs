@@ -1,6 +1,7 @@
 //! Document and text of `replay`.
 
 use super::tool::{SCHEMA, Tool};
+use crate::counted::counted;
 use crate::replay::{Compared, Fitted, Replayed, Summary};
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -190,8 +191,8 @@ pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
     }
     let _ = writeln!(
         text,
-        "\n{} recordings, {:.1} min of riding, engaged {:.1} min",
-        summary.recordings,
+        "\n{}, {:.1} min of riding, engaged {:.1} min",
+        counted(summary.recordings, "recording", "recordings"),
         summary.riding_s / 60.0,
         summary.engaged_s / 60.0
     );
@@ -199,8 +200,11 @@ pub fn summary_text(results: &[ReplayResult], summary: &Summary) -> String {
         let rate = a.per_hour.map_or("-".into(), |rate| format!("{rate:.1}"));
         let _ = writeln!(
             text,
-            "{:>3} {:<24} {} times in {} recordings, {rate} an hour of riding",
-            a.number, a.name, a.count, a.recordings
+            "{:>3} {:<24} {} in {}, {rate} an hour of riding",
+            a.number,
+            a.name,
+            counted(a.count, "time", "times"),
+            counted(a.recordings, "recording", "recordings")
         );
     }
     if summary.alarms.is_empty() {

@@ -3,8 +3,8 @@
 use std::fmt::Display;
 
 /// A number with the name of what is counted, for one and for any other number: "1 frame", "2 frames".
-pub fn counted(number: impl Into<u64> + Display + Copy, one: &str, several: &str) -> String {
-    format!("{number} {}", if number.into() == 1 { one } else { several })
+pub(crate) fn counted(number: impl TryInto<u64> + Display + Copy, one: &str, several: &str) -> String {
+    format!("{number} {}", if number.try_into().is_ok_and(|number| number == 1) { one } else { several })
 }
 
 #[cfg(test)]
