@@ -103,7 +103,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let compute = || pool.install(|| task.run(picture.is_some(), column, hooks));
     let found = picture.as_ref().map_or_else(compute, |picture| picture.during(compute))?;
     bar.finish_and_clear();
-    let ended = write(&task.setup, &outputs, &found, "")?;
+    let ended = write(&task.setup, &outputs, &found, pool.current_num_threads(), "")?;
     if let (Ended::Done, Some(drawn)) = (&ended, &found.drawn)
         && drawn.of.basins.len() < drawn.count
     {
@@ -114,11 +114,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     Ok(ended)
 }
 
-/// Writes a complete or partial basin; `extra` is added to the text.
+/// Writes a complete or partial basin, searched by `threads`; `extra` is added to the text.
 pub(super) fn write(
     setup: &Setup,
     outputs: &Outputs,
     found: &Searched,
+    threads: usize,
     extra: &str,
 ) -> Result<Ended, Failure> {
     let Searched { search, basin: result, seconds, .. } = found;
@@ -156,7 +157,7 @@ pub(super) fn write(
         config: &config,
         summary: || {
             terminal::basin(&figure, 80)
-                + &summary(result, search, &setup.conditions.fall, *seconds)
+                + &summary(result, search, &setup.conditions.fall, *seconds, threads)
                 + &drawn.map_or(String::new(), |drawn| drawn::summary(drawn, &search.speeds))
                 + extra
         },
@@ -177,7 +178,7 @@ pub(super) fn write(
 }
 
 /// The result as text.
-fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -> String {
+fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64, threads: usize) -> String {
     let mut text = String::new();
     let Work { rides, steps: _, right_hand_sides } = basin.work();
     let at_least = if basin.capped() { "at least " } else { "" };
@@ -229,7 +230,7 @@ fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64) -
         "{}, {right_hand_sides} right-hand sides, {seconds:.2} s ({:.0} ns each on {})",
         counted(rides, "ride", "rides"),
         seconds * 1e9 / right_hand_sides.max(1) as f64,
-        counted(rayon::current_num_threads(), "thread", "threads")
+        counted(threads, "thread", "threads")
     );
     text
 }

@@ -83,8 +83,13 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
             );
         }
     }
-    let ended =
-        write(&setup, &outputs, &Searched { search: searched, basin: result, drawn: None, seconds }, &text)?;
+    let ended = write(
+        &setup,
+        &outputs,
+        &Searched { search: searched, basin: result, drawn: None, seconds },
+        pool.current_num_threads(),
+        &text,
+    )?;
     same.map_err(|difference| format!("--compare: {difference}"))?;
     Ok(ended)
 }

@@ -175,7 +175,7 @@ fn a_basins_parts_fit_together() {
 
 /// Situation: the same search on one thread and on two.
 /// Action: compare the documents.
-/// Must hold: equal except for the time it took.
+/// Must hold: equal except for the time it took; the text states the threads.
 #[test]
 fn threads_do_not_change_a_bit() {
     let bench = Bench::new(PROGRAM);
@@ -185,6 +185,10 @@ fn threads_do_not_change_a_bit() {
         document.to_string()
     });
     assert_eq!(one, two);
+    for (n, text) in [(1, "on 1 thread)"), (2, "on 2 threads)")] {
+        let done = bench.run(&format!("{QUICK} --threads {n}"));
+        assert!(done.stdout.contains(text), "{}", done.stdout);
+    }
 }
 
 /// Situation: one bicycle under its shipped name, out of the collection and from a file of its own.

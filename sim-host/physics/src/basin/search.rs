@@ -174,12 +174,13 @@ pub(super) fn in_parallel(
     speeds.par_chunks(together).flat_map_iter(explored).collect()
 }
 
-/// Number of speeds, or of other lines of disturbances, to search together if `left` are to be searched in all: by a fast search as
-/// many as rides are simulated side by side, so that the exact rides, two or more for each line, fill the lanes, but no more than
-/// leaves some for every thread of the current rayon pool; by a plain search one.
+/// Number of speeds, or of other lines of disturbances, to search together if `left` are to be searched in all: in a fast search at
+/// most twice as many as rides are simulated side by side, so that the exact rides, two or more for each line, fill the lanes; about
+/// as many in every group, and no more than leaves some for every thread of the current rayon pool; in a plain search one.
 pub fn together(conditions: &Conditions, search: &Search, left: usize) -> usize {
-    let most = search.quick(conditions).map_or(1, |_| side_by_side());
-    left.div_ceil(rayon::current_num_threads()).clamp(1, most)
+    let most = search.quick(conditions).map_or(1, |_| 2 * side_by_side());
+    let of_thread = left.div_ceil(rayon::current_num_threads()).max(1);
+    of_thread.div_ceil(of_thread.div_ceil(most))
 }
 
 /// As [`basin`], with exact rides only, simulated by `rides`, which returns them in the order of the starts.
