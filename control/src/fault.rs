@@ -144,7 +144,7 @@ causes! {
     SwitchOff = 53,
     /// The self-test is not complete.
     SelfTest = 54,
-    /// A control period was much longer than planned, or its time was before that of the previous one.
+    /// A control period was much longer than planned, its time was before that of the previous one, or the time stands.
     Timing = 55,
     /// The path's errors are missing or too old.
     PathLost = 56,

@@ -25,6 +25,8 @@ pub struct Plan {
     pub(crate) period_us: u32,
     /// Longest time between two steps \[us\]; infinite without a limit.
     pub(crate) max_gap_us: f32,
+    /// Number of short control periods in succession that are no fault; of all numbers the largest without a limit.
+    pub(crate) most_short_periods: u16,
     pub(crate) calibration: CalibrationPlan,
     pub(crate) validation: ValidationPlan,
     pub(crate) cross_check: CrossCheckPlan,
@@ -68,6 +70,7 @@ impl Plan {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
             max_gap_us: c.input.max_gap_ms.map_or(f32::INFINITY, |ms| 1e3 * ms),
+            most_short_periods: c.input.max_gap_ms.map_or(u16::MAX, |ms| (1e-3 * ms * c.rate_hz) as u16),
             calibration: c.calibration.plan(),
             validation: ValidationPlan::new(&c.input, 1.0 / c.rate_hz),
             cross_check: CrossCheckPlan::new(&c.cross, &c.estimate.balance, c.rate_hz),

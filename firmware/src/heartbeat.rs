@@ -56,7 +56,9 @@ pub fn silent(tasks: &[Task]) -> Option<Task> {
         return None;
     }
     let last = |task: Task| LAST_MS[task as usize].load(Ordering::Relaxed);
-    tasks.iter().copied().find(|task| now.saturating_sub(last(*task)) > HEARTBEAT_TIMEOUT_MS)
+    // A report can come after `now` was read.
+    let age_ms = |task: Task| now.wrapping_sub(last(task)).cast_signed().max(0).cast_unsigned();
+    tasks.iter().copied().find(|task| age_ms(*task) > HEARTBEAT_TIMEOUT_MS)
 }
 
 /// Starts the supervision; the board's start takes longer than the timeout of a task.
@@ -72,7 +74,7 @@ pub fn suspend(suspended: bool) {
     SUSPENDED.store(suspended, Ordering::Relaxed);
 }
 
-/// Wraps after 49 days; every task then counts as having just reported, so that one check is without effect.
+/// Wraps after 49 days.
 fn now_ms() -> u32 {
     Instant::now().as_millis() as u32
 }

@@ -12,6 +12,7 @@ use crate::page::{self, PAGE_BYTES};
 use crate::parameter_list::{Kind, ParameterView, each, get};
 use crate::rejection::{RejectReason, Rejection};
 use control::Config;
+use control::param::{ParamError, ParamSpec};
 
 const CHECKED: Key<'static> = Key { group: CALIBRATION, name: "polarity_checked" };
 /// The group whose change needs a new polarity check.
@@ -46,6 +47,14 @@ pub fn set<'a>(config: &mut Config, key: Key<'a>, value: Option<f32>) -> Result<
     }
     *config = draft.plan()?.config().clone();
     Ok(())
+}
+
+/// Checks the rate of the control step against that of the board, which no parameter can change.
+///
+/// # Errors
+/// States the board's rate as the only value.
+pub fn check_rate(config: &Config, board_hz: f32) -> Result<(), ParamError> {
+    ParamSpec::new("", "rate_hz", board_hz, board_hz).check(config.rate_hz)
 }
 
 /// Checks a parameter's value by itself: kind and range.
@@ -117,7 +126,8 @@ pub fn request<'a>(received: &Received<'a>) -> Result<(u16, Message<'a>), NoRequ
     }
 }
 
-/// Carries out a request about parameters and returns the answer, built in `room`.
+/// Carries out a request about parameters and returns the answer, built in `room`. The rate of the control step stays that of
+/// the board's `defaults`.
 ///
 /// `None` if the caller has to handle the request, since it has the flash, the image's name, the faults or the loop:
 /// `AskHello`, `Store` when not engaged, `ListFaults`, `ClearFaults`, `PilReset`, `PilConfig`, `PilFrame`. Messages
@@ -136,7 +146,15 @@ pub fn answer<'a>(
     let answer = match *request {
         List { from } => Ok(Message::Page(page::fill(defaults, config, from, room))),
         Get { key } => value(config, key),
-        Set { key, value: wanted } => set(config, key, wanted).and_then(|()| value(config, key)),
+        Set { key, value: wanted } => {
+            let mut draft = config.clone();
+            let checked = set(&mut draft, key, wanted);
+            let checked = checked.and_then(|()| Ok(check_rate(&draft, defaults.rate_hz)?));
+            checked.and_then(|()| {
+                *config = draft;
+                value(config, key)
+            })
+        }
         GetLaw => Ok(law_of(config, room)),
         SetLaw(bytes) => set_law(config, bytes).map(|()| law_of(config, room)),
         Reset => {

@@ -7,6 +7,7 @@
 
 use crate::alignment::Alignment;
 use crate::record::{self, Applied, InvalidRecord, NoRecord, RECORD_BYTES, Record};
+use crate::requests::check_rate;
 use crate::word_flash::WordFlash;
 use control::Config;
 use control::param::ParamError;
@@ -142,7 +143,12 @@ impl<F: NorFlash> Store<F> {
             Ok(None) => Found::Nothing,
             Err(invalid) => Found::Invalid(invalid),
             Ok(Some(record)) => {
-                let applied = record.apply(&mut config);
+                let mut applied = record.apply(&mut config);
+                if let Err(error) = check_rate(&config, defaults.rate_hz) {
+                    config.rate_hz = defaults.rate_hz;
+                    applied.rejected += 1;
+                    applied.first_rejected = applied.first_rejected.or(Some(error));
+                }
                 if applied.rejected > 0 || applied.calibration_missing {
                     config.calibration.polarity_checked = false;
                 }

@@ -24,7 +24,7 @@ pub async fn control(plan: &'static mut Plan) {
     loop {
         release += PERIOD;
         Timer::at(release).await;
-        if let Some((next, number)) = settings::take(mode) {
+        if let Some((next, number)) = settings::take(mode, state.torque_nm()) {
             (*plan, configuration) = (next, number);
             (state, mode) = (State::default(), Mode::Off);
         }

@@ -67,11 +67,11 @@ pub(super) fn polarity_passed(number: u32) {
     });
 }
 
-/// The pending plan and its number, if a controller in this mode can use it.
-pub(super) fn take(mode: Mode) -> Option<(Plan, u32)> {
+/// The pending plan and its number, if a controller in this mode and with this last torque can use it.
+pub(super) fn take(mode: Mode, torque_nm: f32) -> Option<(Plan, u32)> {
     SETTINGS.lock(|settings| {
         let mut settings = settings.borrow_mut();
-        let next = settings.next.take_if(|next| next.at_once || !mode.drives())?;
+        let next = settings.next.take_if(|next| next.at_once || !(mode.drives() || torque_nm != 0.0))?;
         Some((next.plan, settings.number))
     })
 }

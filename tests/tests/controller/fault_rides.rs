@@ -36,14 +36,15 @@ fn without_a_fault_nothing_is_reported() {
     assert!((1.0..=7.0).contains(&peak), "{peak} N m");
 }
 
-/// Situation: the clock stops, runs at half, three or six times its rate, or jumps back by 2 ms.
+/// Situation: the clock stops, runs at 0.4, 0.5, three or six times its rate, or jumps back by 2 ms.
 /// Action: ride on from there.
-/// Must hold: periods above 5 ms and a time that goes back are `Timing` at once; shorter ones, as the cause's page
-/// states, are not.
+/// Must hold: periods above 5 ms and a time that goes back are `Timing` at once, a clock that stands or runs at less than half
+/// its rate after 5 ms; others, as the cause's page states, are not.
 #[test]
-fn only_long_periods_are_a_timing_fault() {
+fn long_periods_and_a_standing_clock_are_timing_faults() {
     for (fault, expected) in [
-        ("clock:stuck@1s", None),
+        ("clock:stuck@1s", Some(1.005)),
+        ("clock:scale=0.4@1s", Some(1.005)),
         ("clock:scale=0.5@1s", None),
         ("clock:scale=3@1s", None),
         ("clock:scale=6@1s", Some(1.0)),
@@ -56,6 +57,24 @@ fn only_long_periods_are_a_timing_fault() {
             (at, from) => at == from,
         };
         assert!(near, "{fault}: {timing:?}");
+    }
+}
+
+/// Situation: the assist acts on a knock; the clock stands from 0.2 s on.
+/// Action: nothing else, the gyro missing from 0.203 s, or the switch open from then.
+/// Must hold: the torque falls at its limit, to zero within the ramp-out, and remains zero: it does not stay at its last value because no
+/// time passes.
+#[test]
+fn a_standing_clock_ends_the_torque() {
+    for other in [None, Some("gyro:missing@203ms"), Some("engage:missing@203ms")] {
+        let faults =
+            ["clock:stuck@200ms"].into_iter().chain(other).map(|text| text.parse().unwrap()).collect();
+        let trace = traced(&ridden(Plant { faults, ..Plant::default() }), KNOCK).1;
+        let at = |s: f64| trace.iter().find(|p| p.t >= s).map_or(0.0, |p| p.torque);
+        assert!(at(0.2).abs() > 0.5, "{other:?}: {} N m before", at(0.2));
+        assert!(trace.iter().filter(|p| p.t > 0.42).all(|p| p.torque == 0.0), "{other:?}");
+        let steps = trace.windows(2).map(|pair| (pair[1].torque - pair[0].torque).abs());
+        assert!(steps.fold(0.0, f64::max) < 0.21, "{other:?}");
     }
 }
 

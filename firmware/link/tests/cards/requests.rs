@@ -134,6 +134,7 @@ fn a_mistake_is_named() {
             RejectReason::NotWhole,
             "calibration.motor_reversed = 0.5 is not a whole number of 0 to 1",
         ),
+        (&config, to("rate_hz", 500.0), RejectReason::OutOfRange, "rate_hz = 500 is outside 1000 to 1000"),
         (&config, to("law", 9.0), RejectReason::OutOfRange, "law = 9 is outside 0 to 8"),
         (&config, to("law", 6.0), RejectReason::OutOfRange, "law.cl2.k = 0 is outside 0.001 to 20"),
         (&config, to("law", 7.0), RejectReason::OutOfRange, "law.table.points = 0 is outside 1 to 32"),

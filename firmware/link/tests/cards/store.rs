@@ -178,6 +178,8 @@ fn a_value_outside_todays_range_is_rejected_and_named() {
         ("calibration.steer_zero_rad", f32::NAN, "steer_zero_rad"),
         ("input.wheel", 7.0, "wheel"),
         ("calibration.motor_reversed", 2.0, "motor_reversed"),
+        // Within the range, but the board's control step has another rate.
+        ("rate_hz", 500.0, "rate_hz"),
     ] {
         let (found, result, _) = load(flashed(&with(&whole, key, value)), &Config::product());
         let Found::Record(applied) = result else { panic!("{key}: {result:?}") };

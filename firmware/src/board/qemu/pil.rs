@@ -7,7 +7,7 @@ use super::semihosting::{Stream, exit};
 use super::{Exit, reset, serial, stack, text, time};
 use crate::{crash, tasks, telemetry};
 use control::wire::{CONFIG_BYTES, decode_config};
-use control::{Config, Plan, SensorFrame};
+use control::{Plan, SensorFrame};
 use core::cell::RefCell;
 use critical_section::Mutex;
 use embassy_time::{Instant, Timer};
@@ -15,6 +15,7 @@ use link::frame::{Decoder, MAX_FRAME, Received};
 use link::lockstep::{FromBoard, MAX_CHUNK, ToBoard};
 use link::message::Message;
 use link::rejection::{RejectReason, Rejection};
+use link::requests::check_rate;
 use static_cell::ConstStaticCell;
 
 /// One control period \[us\].
@@ -123,16 +124,9 @@ impl Incoming {
     fn plan(&mut self) -> Result<Plan, Rejection<'static>> {
         let whole = core::mem::take(&mut self.have) == CONFIG_BYTES;
         let config = if whole { decode_config(&self.bytes)? } else { tasks::settings::config() };
-        let right = config.rate_hz * PERIOD_US as f32 == 1e6;
-        if right { Ok(config.plan()?) } else { Err(wrong_rate(&config)) }
+        check_rate(&config, 1e6 / PERIOD_US as f32)?;
+        Ok(config.plan()?)
     }
-}
-
-/// The board runs one step per period, whatever the configuration.
-fn wrong_rate(config: &Config) -> Rejection<'static> {
-    let rate_hz = 1e6 / PERIOD_US as f32;
-    let about = Rejection::about(RejectReason::OutOfRange, link::Key::whole("rate_hz"));
-    Rejection { value: config.rate_hz, min: rate_hz, max: rate_hz, ..about }
 }
 
 /// Connects to the host, until the host closes its end; text then goes to standard error.
