@@ -23,7 +23,7 @@ use crate::sensors::validation::ValidationPlan;
 pub struct Plan {
     pub(crate) period_s: f32,
     pub(crate) period_us: u32,
-    /// Longest time between two steps \[us\]; infinite without a limit.
+    /// Longest time between two steps, a whole number \[us\]; infinite without a limit.
     pub(crate) max_gap_us: f32,
     /// Number of short control periods in succession that are no fault; of all numbers the largest without a limit.
     pub(crate) most_short_periods: u16,
@@ -55,7 +55,7 @@ impl Config {
         self.visit_params(&mut checker);
         checker.note(self.law.validate());
         checker.note(self.limits.cross());
-        checker.note(self.input.cross());
+        checker.note(self.input.cross(self.rate_hz));
         checker.note(self.track.as_ref().map_or(Ok(()), PathTracking::cross));
         checker.verdict()?;
         Ok(Plan::new(self))
@@ -66,11 +66,14 @@ impl Plan {
     /// Computes the plan of a validated configuration.
     fn new(config: Config) -> Self {
         let c = &config;
+        // Rounded, as 1e3 times 0.502 is below 502.
+        let max_gap_us = c.input.max_gap_ms.map_or(f32::INFINITY, |ms| (1e3 * ms + 0.5) as u32 as f32);
         Self {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
-            max_gap_us: c.input.max_gap_ms.map_or(f32::INFINITY, |ms| 1e3 * ms),
-            most_short_periods: c.input.max_gap_ms.map_or(u16::MAX, |ms| (1e-3 * ms * c.rate_hz) as u16),
+            max_gap_us,
+            // The cast of infinity is the largest number.
+            most_short_periods: (max_gap_us / (1e6 / c.rate_hz)) as u16,
             calibration: c.calibration.plan(),
             validation: ValidationPlan::new(&c.input, 1.0 / c.rate_hz),
             cross_check: CrossCheckPlan::new(&c.cross, &c.estimate.balance, c.rate_hz),

@@ -47,6 +47,9 @@ pub struct ValidationConfig {
 /// The only choice of `input.wheel` without front wheel and steer angle: the rear wheel.
 const REAR: ParamSpec = ParamSpec::new("input", "wheel", 1.0, 1.0);
 
+/// Longest time between two control periods \[ms\].
+const MAX_GAP: ParamSpec = ParamSpec::new("input", "max_gap_ms", 0.1, 1000.0);
+
 /// Largest number of samples that the speed's bounds can span.
 pub const MAX_RECENT_SAMPLES: usize = 6;
 
@@ -84,14 +87,19 @@ impl ValidationConfig {
         Self { wheel, ..self }
     }
 
-    /// Checks that the speed of the scheduling wheel can be computed: without a front wheel sensor that takes the steer
-    /// angle. The rear wheel is never the faster one, so the front wheel's speed bounds it.
+    /// Checks relations to other parameters. The speed of the scheduling wheel can be computed: without a front wheel
+    /// sensor that takes the steer angle; the rear wheel is never the faster one, so the front wheel's speed bounds it.
+    /// A gap as long as the control period, in the clock's whole microseconds, is none.
     ///
     /// # Errors
-    /// `input.wheel`, and the value that the fitted sensors allow.
-    pub fn cross(&self) -> Result<(), ParamError> {
+    /// `input.wheel` or `input.max_gap_ms`, and the values that the others allow.
+    pub fn cross(&self, rate_hz: f32) -> Result<(), ParamError> {
         let speed_available = self.front_wheel.fitted || self.steer.fitted || !self.rear_wheel.fitted;
-        if self.wheel == Wheel::Front && !speed_available { Err(REAR.error(0.0)) } else { Ok(()) }
+        if self.wheel == Wheel::Front && !speed_available {
+            return Err(REAR.error(0.0));
+        }
+        let min = longest_period_us(rate_hz) / 1e3;
+        self.max_gap_ms.map_or(Ok(()), |ms| ParamSpec { min, ..MAX_GAP }.check(ms))
     }
 
     /// Visits every parameter.
@@ -106,7 +114,7 @@ impl ValidationConfig {
         );
         to.number(&ParamSpec::new(g, "drift_m_s2", 0.0, 100.0), &mut self.drift_m_s2);
         to.count(&ParamSpec::new(g, "drift_after_ticks", 0.0, 10_000.0), &mut self.drift_after_ticks);
-        to.optional_number(&ParamSpec::new(g, "max_gap_ms", 0.1, 1000.0), &mut self.max_gap_ms);
+        to.optional_number(&MAX_GAP, &mut self.max_gap_ms);
         self.gyro.visit_params("input.gyro", to);
         self.accel.visit_params("input.accel", to);
         self.steer.visit_params("input.steer", to);
@@ -166,6 +174,13 @@ impl ValidationConfig {
         }
         set
     }
+}
+
+/// The longest time between two calls at `rate_hz` on a clock of whole microseconds \[us\].
+fn longest_period_us(rate_hz: f32) -> f32 {
+    let period_us = 1e6 / rate_hz;
+    let whole = period_us as u32 as f32;
+    if whole < period_us { whole + 1.0 } else { whole }
 }
 
 /// Constants derived from the declarations and the call rate.

@@ -3,7 +3,8 @@
 use control::sensors::measurements::Measurements;
 use control::sensors::validation::{self, ValidationPlan, ValidationState};
 use control::{
-    Calibration, Cause, Causes, Config, Loss, Sample, Sensor, SensorFrame, Triple, ValidationConfig, Wheel,
+    Calibration, Cause, Causes, Config, Loss, Sample, Sensor, SensorFrame, State, Triple, ValidationConfig,
+    Wheel,
 };
 
 const PERIOD_S: f32 = 1e-3;
@@ -329,4 +330,44 @@ fn the_scheduling_speed_must_be_measurable() {
             }
         }
     }
+}
+
+/// Situation: call rates from 100 to 10000 Hz, some with periods that are no whole number of microseconds, one whose
+/// period in milliseconds is rounded down.
+/// Action: set `input.max_gap_ms` to a microsecond less than the longest period, and to that period; step at the rate.
+/// Must hold: the former is rejected with key, value and range; with the latter no period is a fault of timing; as
+/// flashed the lowest rate is rejected.
+#[test]
+fn a_permitted_gap_is_no_shorter_than_the_control_period() {
+    let rejected = |rate_hz: f32, ms: f32| {
+        let mut config = Config { rate_hz, ..Config::product() };
+        config.input.max_gap_ms = Some(ms);
+        config.plan().map_err(|error| error.to_string())
+    };
+    for (rate_hz, longest_us) in [
+        (100.0_f32, 10_000_u32),
+        (300.0, 3334),
+        (1000.0, 1000),
+        (1e6 / 502.0, 502),
+        (7000.0, 143),
+        (10_000.0, 100),
+    ] {
+        let [shorter_ms, ms] = [longest_us - 1, longest_us].map(|us| us as f32 / 1e3);
+        let error = rejected(rate_hz, shorter_ms).expect_err("shorter than a period");
+        let least = if longest_us > 100 { ms } else { 0.1 };
+        assert_eq!(
+            error,
+            format!("input.max_gap_ms = {shorter_ms} is outside {least} to 1000"),
+            "{rate_hz} Hz"
+        );
+        let plan = rejected(rate_hz, ms).expect("as long as a period");
+        let mut state = State::default();
+        for i in 0..1000_u32 {
+            let now_us = (1e6 * f64::from(i) / f64::from(rate_hz)) as u32;
+            let command = control::step(&plan, &mut state, &SensorFrame { now_us, ..SensorFrame::missing() });
+            assert!(!command.causes.has(Cause::Timing), "{rate_hz} Hz, {now_us} us");
+        }
+    }
+    let flashed = Config { rate_hz: 100.0, ..Config::product() }.plan().expect_err("10 ms");
+    assert_eq!(flashed.to_string(), "input.max_gap_ms = 5 is outside 10 to 1000");
 }
