@@ -3,6 +3,7 @@
 //! A delay of whole control periods acts on the law's torque, which is stored at the starts of the steps; the limits act on what
 //! arrives. A motor's delay lies behind the limits, but constant limits give the same torque in either order.
 
+use super::limits::TorqueLimits;
 use crate::integrate::STAGES;
 use crate::num::Lanes;
 use crate::ride::Conditions;
@@ -10,8 +11,6 @@ use crate::ride::assist::IdealLaw;
 use crate::rider::SignalHistory;
 use control::Limits;
 
-/// Rate of change that counts as none \[N m/s\].
-const UNLIMITED_NM_S: f64 = 1e9;
 /// Parts of a step at whose ends the limits are compared, and halvings of the part in which another begins to act.
 const PARTS: u32 = 4;
 const HALVINGS: u32 = 6;
@@ -41,19 +40,6 @@ pub(super) struct Late {
     pub(super) delay_s: f64,
 }
 
-/// Limits of the torque.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct TorqueLimits {
-    /// Largest commanded torque \[N m\].
-    pub(super) largest_nm: f64,
-    /// Largest rate of change away from zero, and towards zero \[N m/s\].
-    rise_nm_s: f64,
-    fall_nm_s: f64,
-    /// Delivered over commanded torque, and the largest that the motor delivers \[N m\].
-    scale: f64,
-    delivered_nm: f64,
-}
-
 impl LateLaw {
     /// A law with exact sensors and motor.
     pub(super) fn ideal(law: IdealLaw) -> Self {
@@ -67,14 +53,7 @@ impl LateLaw {
         let ticks = u32::from(conditions.sensor_delay_ticks) + u32::from(actuator.delay_ticks);
         let arrives_s = f64::from(ticks) * conditions.step_s;
         let late = (ticks > 0).then_some(Late { arrives_s, delay_s: arrives_s + half_s });
-        let rate = |nm_s: Option<f32>| nm_s.map_or(UNLIMITED_NM_S, f64::from);
-        let limits = TorqueLimits {
-            largest_nm: limits.max_torque_nm.map_or(f64::INFINITY, f64::from),
-            rise_nm_s: rate(limits.rise_nm_s),
-            fall_nm_s: rate(limits.fall_nm_s),
-            scale: actuator.scale,
-            delivered_nm: actuator.limit_nm.unwrap_or(f64::INFINITY),
-        };
+        let limits = TorqueLimits::new(limits, actuator);
         Self {
             law,
             half_period_s: half_s,
@@ -82,61 +61,6 @@ impl LateLaw {
             late,
             limits: (limits != TorqueLimits::NONE).then_some(limits),
         }
-    }
-}
-
-impl TorqueLimits {
-    const NONE: Self = Self {
-        largest_nm: f64::INFINITY,
-        rise_nm_s: UNLIMITED_NM_S,
-        fall_nm_s: UNLIMITED_NM_S,
-        scale: 1.0,
-        delivered_nm: f64::INFINITY,
-    };
-
-    /// The slower rate of change \[N m/s\].
-    pub(super) fn slower_nm_s(&self) -> f64 {
-        self.rise_nm_s.min(self.fall_nm_s)
-    }
-
-    /// Whether the motor delivers what is commanded.
-    pub(super) fn exact_motor(&self) -> bool {
-        self.scale == 1.0 && self.delivered_nm == f64::INFINITY
-    }
-
-    /// The command `elapsed_s` after it was `began_nm`, if the law's torque is `wanted_nm` \[N m\]. The limiter of the control
-    /// crate in continuous time: a torque that changes sign first falls to zero.
-    #[inline(always)]
-    fn command(&self, began_nm: f64, wanted_nm: f64, elapsed_s: f64) -> f64 {
-        let wanted = wanted_nm.max(-self.largest_nm).min(self.largest_nm);
-        if self.slower_nm_s() >= UNLIMITED_NM_S {
-            return wanted;
-        }
-        let side = if began_nm < 0.0 { -1.0 } else { 1.0 };
-        let risen = side * began_nm + self.rise_nm_s * elapsed_s;
-        let fallen = side * began_nm - self.fall_nm_s * elapsed_s;
-        let fallen = if fallen < 0.0 { fallen * (self.rise_nm_s / self.fall_nm_s) } else { fallen };
-        side * (side * wanted).max(fallen).min(risen)
-    }
-
-    /// What determines [`Self::command`].
-    fn by(&self, began_nm: f64, wanted_nm: f64, elapsed_s: f64) -> By {
-        let command_nm = self.command(began_nm, wanted_nm, elapsed_s);
-        if command_nm == wanted_nm {
-            By::Law
-        } else if command_nm.abs() == self.largest_nm {
-            By::Magnitude
-        } else if command_nm < 0.0 {
-            By::RateLeft
-        } else {
-            By::RateRight
-        }
-    }
-
-    /// The motor's torque by the command \[N m\].
-    #[inline(always)]
-    fn delivered(&self, command_nm: f64) -> f64 {
-        (self.scale * command_nm).max(-self.delivered_nm).min(self.delivered_nm)
     }
 }
 
@@ -148,16 +72,6 @@ impl Late {
 
 /// The law's torque over a step, at its start, middle and end \[N m\].
 type Wanted = [f64; 3];
-
-/// What determines a command.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum By {
-    Law,
-    Magnitude,
-    /// The rates of change on the two sides of zero.
-    RateLeft,
-    RateRight,
-}
 
 /// The state of a lane.
 #[derive(Clone, Debug)]
@@ -359,25 +273,5 @@ impl LimitedRide<'_> {
             self.lane.begin((self.law, &self.limits), self.t, h);
         }
         self.lane.torque(&self.limits, stage, wanted_nm)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A torque of 3 N m that is to become -4 N m, rise 10 and fall 20 N m/s: zero after 0.15 s, then a rise of 10 N m/s to the
-    /// other side.
-    #[test]
-    fn a_torque_that_changes_sign_first_falls_to_zero() {
-        let limits = TorqueLimits { largest_nm: 3.5, rise_nm_s: 10.0, fall_nm_s: 20.0, ..TorqueLimits::NONE };
-        for (elapsed_s, torque_nm) in [(0.0, 3.0), (0.1, 1.0), (0.15, 0.0), (0.25, -1.0), (1.0, -3.5)] {
-            for side in [1.0, -1.0] {
-                let now = limits.command(side * 3.0, side * -4.0, elapsed_s);
-                assert!((now - side * torque_nm).abs() < 1e-12, "{now} N m after {elapsed_s} s");
-            }
-        }
-        assert!((limits.command(1.0, 4.0, 0.1) - 2.0).abs() < 1e-12, "a torque on the same side rises");
-        assert_eq!(limits.command(1.0, 1.5, 0.1), 1.5, "a torque within reach is reached");
     }
 }

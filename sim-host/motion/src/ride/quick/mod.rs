@@ -8,6 +8,7 @@ mod controller;
 mod forecast;
 mod lane;
 mod limited;
+mod limits;
 mod linear;
 mod riders;
 mod source;
