@@ -129,3 +129,31 @@ fn signals_of_irregular_steps_arrive_unchanged() {
         assert!(ends.iter().any(|end| (end - kink).abs() < 1e-9), "no step ends at {kink} s");
     }
 }
+
+/// Situation: a delay of 2.5 ms, of which the first signal arrives after 2 ms, in steps of up to 20 ms that end at its kinks; the
+/// signal is a cubic. Action: ask for what arrives within a step, with the signal at its end.
+/// Must hold: the cubic to rounding once four signals are known, and no kink after the sum of the two times.
+#[test]
+fn signals_arrive_within_steps_longer_than_the_delay() {
+    const DELAY_S: f64 = 2.5e-3;
+    let sent = |t: f64| 1.0 + 40.0 * t - 900.0 * t * t + 7000.0 * t * t * t;
+    let mut history = SignalHistory::arriving_from(2e-3, DELAY_S);
+    let (mut t, mut within) = (0.0, 0);
+    for step in 0..60 {
+        history.push(t, sent(t));
+        let kink_s = history.kink_s(t);
+        assert_eq!(kink_s.is_finite(), t < 2e-3 + DELAY_S - 1e-9, "{kink_s} s from {t} s");
+        let h = kink_s.min([0.02, 0.004, 0.0007, 0.011][step % 4]);
+        for part in [0.25, 0.5, 1.0].into_iter().filter(|part| step > 5 && part * h > DELAY_S) {
+            let arrived = history.arriving_before((t + h, sent(t + h)), t, part * h);
+            let wanted = sent(t + part * h - DELAY_S);
+            assert!(
+                (arrived - wanted).abs() < 1e-9 * wanted.abs().max(1.0),
+                "{arrived} for {wanted} at {t} s"
+            );
+            within += 1;
+        }
+        t += h;
+    }
+    assert!(within > 80, "{within}");
+}

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sim_host::basin::{Axis, Column, Method, PlaneSearch, Search, basin, border, borders, plane, together};
+use sim_host::plant::Supply;
 use sim_host::ride::{Conditions, Imu, Outcome, Quick, Start, rides, side_by_side};
 use sim_host::rider::Rider;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
@@ -228,8 +229,14 @@ fn limited(max_torque_nm: Option<f32>, rate_nm_s: Option<f32>, delay_ticks: u16)
     Conditions { sensor_delay_ticks: delay_ticks, ..configured(config) }
 }
 
-/// Situation: h behind limits of the torque and of its change, late sensors, or a motor that is late, weak or has a wrong
-/// torque constant, without a rider and with one; steer or roll rate disturbed. With a disturbed roll rate the late torque begins
+/// The same conditions with a motor that responds with this time constant \[s\].
+fn lagging(time_constant_s: f64, mut conditions: Conditions) -> Conditions {
+    conditions.plant.actuator.time_constant_s = time_constant_s;
+    conditions
+}
+
+/// Situation: h behind limits of the torque and of its change, late sensors, or a motor that is late, weak, has a wrong torque
+/// constant or a lag, without a rider and with one; steer or roll rate disturbed. With a disturbed roll rate the late torque begins
 /// with a jump. Action: search fast and plainly.
 /// Must hold: heights, islands, border rides and outcomes have the same bits; of the falls at most one in 25 differs by more than
 /// 1 ms.
@@ -250,7 +257,15 @@ fn fast_and_plain_searches_agree_behind_limits_and_delays() {
         (limited(Some(5.0), Some(50.0), 60), search(&[4.0], 14.0)),
         (limited(None, None, 10), roll(&[3.0, 5.0])),
         (limited(Some(7.0), Some(50.0), 20), roll(&[4.0])),
+        (limited(None, None, 1), search(&[3.0, 6.0], 14.0)),
+        (limited(None, Some(50.0), 2), roll(&[4.0])),
+        (lagging(20e-3, limited(None, None, 0)), search(&[3.0, 6.0], 14.0)),
+        (lagging(2e-3, limited(None, None, 3)), roll(&[3.0, 5.0])),
+        (lagging(50e-3, motor.clone()), search(&[4.5], 14.0)),
         (motor, search(&[4.5], 14.0)),
+        (ridden("smart", limited(None, None, 2)), roll(&[4.0])),
+        (ridden("smart", lagging(10e-3, limited(None, None, 2))), roll(&[4.0])),
+        (ridden("young", lagging(20e-3, limited(Some(5.0), None, 0))), search(&[3.0, 6.0], 14.0)),
         (ridden("smart", limited(Some(5.0), Some(50.0), 40)), search(&[3.0, 6.0], 14.0)),
         (ridden("smart", limited(None, None, 20)), roll(&[4.0])),
         (ridden("hess", limited(Some(5.0), None, 10)), search(&[3.0], 6.0)),
@@ -274,9 +289,17 @@ fn fast_and_plain_basins_agree_behind_limits_and_delays() {
         limited(None, Some(50.0), 0),
         limited(None, None, 20),
         limited(Some(7.0), Some(100.0), 10),
+        limited(None, None, 2),
+        lagging(20e-3, limited(None, None, 0)),
+        lagging(10e-3, limited(Some(7.0), Some(100.0), 3)),
     ];
-    let with_rider =
-        [limited(Some(5.0), None, 0), limited(None, None, 20), limited(Some(7.0), Some(100.0), 40)];
+    let with_rider = [
+        limited(Some(5.0), None, 0),
+        limited(None, None, 20),
+        limited(Some(7.0), Some(100.0), 40),
+        limited(None, None, 2),
+        lagging(20e-3, limited(None, None, 0)),
+    ];
     let all = bare.into_iter().map(|conditions| (conditions, &speeds[..]));
     let with_rider = with_rider.map(|conditions| (ridden("smart", conditions), &speeds[20..=75]));
     for (conditions, speeds) in all.chain(with_rider) {
@@ -332,21 +355,22 @@ fn fast_and_plain_planes_and_heights_agree() {
     assert!(2 * fast.work.steps < plain.work.steps, "{:?} {:?}", fast.work, plain.work);
 }
 
-/// Situation: conditions under which more acts than controller, constant delays and rider: a motor with a lag, friction; and a
-/// sensor's delay of two control periods, or a rider's neural delay, which would limit the steps to them. Action: search.
+/// Situation: conditions under which more acts than controller, constant delays, a motor's lag and rider: a motor with a voltage,
+/// friction; the product with late sensors; and a rider's neural delay of two control periods, which would limit the steps to it.
+/// Action: search.
 /// Must hold: there are no quick rides, and both searches are one. A dead band, the gyro's own axis and the speed of the
 /// rear wheel are part of the law.
 #[test]
 fn quick_rides_exist_for_controller_and_rider_alone() {
     let mut friction = assisted(H);
     friction.plant.actuator.friction.coulomb_nm = 0.1;
-    let mut lagging = assisted(H);
-    lagging.plant.actuator.time_constant_s = 0.01;
+    let mut supplied = assisted(H);
+    supplied.plant.actuator.supply =
+        Some(Supply { voltage_v: 24.0, resistance_ohm: 0.2, constant_nm_a: 1.0 });
     let others = [
-        Conditions { sensor_delay_ticks: 2, ..assisted(H) },
-        Conditions { sensor_delay_ticks: 20, ..configured(product()) },
         friction,
-        lagging,
+        supplied,
+        Conditions { sensor_delay_ticks: 20, ..configured(product()) },
         Conditions { rider: Some(Rider { delay_s: 2e-3, ..rider("young") }), ..alone() },
     ];
     for conditions in &others {

@@ -41,10 +41,12 @@ impl SignalHistory {
         self.nodes.clear();
     }
 
-    /// Stores the signal at the start of a step, `t` seconds after t = 0, and forgets those that no later step needs.
+    /// Stores the signal at the start of a step, `t` seconds after t = 0, and forgets those that neither the step before nor a later
+    /// one needs.
     pub fn push(&mut self, t: f64, signal: f64) {
+        let before = self.nodes.back().map_or(0.0, |node| node.0);
         self.nodes.push_back((t, signal));
-        while self.nodes.get(3).is_some_and(|node| node.0 <= t - self.delay_s) {
+        while self.nodes.get(3).is_some_and(|node| node.0 <= before - self.delay_s) {
             self.nodes.pop_front();
         }
     }
@@ -59,22 +61,41 @@ impl SignalHistory {
     /// The longest step from `t` that does not pass a time at which the arriving signal has a kink, and no longer than the delay
     /// \[s\].
     pub fn longest_step_s(&self, t: f64) -> f64 {
+        self.kink_s(t).min(self.delay_s)
+    }
+
+    /// The time from `t` to the next at which the arriving signal has a kink \[s\]; infinite after the last.
+    pub fn kink_s(&self, t: f64) -> f64 {
         let Self { delay_s, first_s, jump_s, .. } = *self;
         let kinks_s = [first_s, delay_s, first_s + delay_s, jump_s, jump_s + delay_s];
         let left_s = kinks_s.into_iter().map(|kink_s| kink_s - t).filter(|left_s| *left_s > Self::SAME_S);
-        left_s.fold(delay_s, f64::min)
+        left_s.fold(f64::INFINITY, f64::min)
     }
 
     /// The signals that arrive at start, middle and end of the step of `h` seconds from `t`, the time of the latest signal;
     /// zero before the first one arrives.
     #[inline(always)]
     pub fn arriving(&self, t: f64, h: f64) -> [f64; 3] {
+        [0.0, 0.5, 1.0].map(|part| self.arriving_after(t, part * h))
+    }
+
+    /// The signal that arrives `elapsed_s` after the start `t` of a step.
+    #[inline(always)]
+    pub fn arriving_after(&self, t: f64, elapsed_s: f64) -> f64 {
         if t < self.first_s - Self::SAME_S {
-            return [0.0; 3];
+            return 0.0;
         }
         // A step that ends with a jump is before it, one that begins with it after.
         let before_jump = t - self.delay_s < self.jump_s - Self::SAME_S;
-        [0.0, 0.5, 1.0].map(|part| self.interpolated((t + part * h - self.delay_s).max(0.0), before_jump))
+        self.interpolated((t + elapsed_s - self.delay_s).max(0.0), before_jump)
+    }
+
+    /// The same after the latest signal, if a later one is `next`: its time \[s\] and signal \[N m\].
+    pub fn arriving_before(&mut self, next: (f64, f64), t: f64, elapsed_s: f64) -> f64 {
+        self.nodes.push_back(next);
+        let signal = self.arriving_after(t, elapsed_s);
+        self.nodes.pop_back();
+        signal
     }
 
     /// The signal at a past time \[s\], not before the oldest that is kept.
@@ -99,8 +120,11 @@ impl SignalHistory {
             by_kink && before_jump == (node < self.jump_s + Self::SAME_S)
         };
         // The usual case. The nodes are in order: between two smooth ones all are.
-        if after >= 2 && after < last && smooth(after - 2) && smooth(after + 1) {
-            return lagrange(&std::array::from_fn::<_, 4, _>(|i| nodes[after - 2 + i]), t);
+        if after >= 2 && last >= 3 {
+            let from = (after - 2).min(last - 3);
+            if smooth(from) && smooth(from + 3) {
+                return lagrange(&std::array::from_fn::<_, 4, _>(|i| nodes[from + i]), t);
+            }
         }
         let lowest =
             (after.saturating_sub(4)..after).rev().take_while(|&i| smooth(i)).last().unwrap_or(after);

@@ -6,6 +6,7 @@
 
 mod controller;
 mod forecast;
+mod lag;
 mod lane;
 mod limited;
 mod limits;
@@ -26,7 +27,7 @@ use crate::rider::Instant;
 use controller::{Controllers, StepStart};
 use forecast::{Forecast, Now};
 use lane::Lane;
-use limited::Limited;
+use limited::{LateLaw, Limited};
 use riders::QuickRiders;
 use source::{Given, Source};
 
@@ -67,7 +68,7 @@ const STEPS_PER_S: f64 = 2000.0;
 const CLEAR: [f64; 2] = [1.05, 1.005];
 /// The same of a controller that is executed in every control period: 0.03 %, 1 in 100 by 0.12 %, 0.9 % at most.
 const CLEAR_SAMPLED: [f64; 2] = [1.01; 2];
-/// The same with a rider, or with limits or delays of the torque: a few in 1000 by more than 10 %, in fine steps by more than 3 %.
+/// The same with a rider, or with limits, delays or a lag of the torque: a few in 1000 by more than 10 %, in fine steps by more than 3 %.
 const CLEAR_ROUGH: [f64; 2] = [1.15, 1.03];
 
 /// The result of a quick ride.
@@ -100,28 +101,25 @@ pub struct Quick<'a> {
 }
 
 impl<'a> Quick<'a> {
-    /// Quick rides under these conditions. `None` if more acts than controller, constant delays and rider: errors of sensors, a
-    /// motor with a lag or a voltage, friction or an end-stop; or if a delay needs steps that are hardly longer than the exact ride's.
+    /// Quick rides under these conditions. `None` if more acts than controller, constant delays, a motor's lag and rider: errors of
+    /// sensors, a motor with a voltage, friction or an end-stop; or if a rider's delay needs steps that are hardly longer than the
+    /// exact ride's.
     ///
-    /// A law that is sampled and held is the continuous law, delayed by half a control period; constant limits and delays act in
-    /// continuous time, too. A controller with any other function is executed in every control period, with sensors and a motor that
+    /// A law that is sampled and held is the continuous law, delayed by half a control period; constant limits, delays and the lag act
+    /// in continuous time, too. A controller with any other function is executed in every control period, with sensors and a motor that
     /// are exact and not late.
     pub fn new(conditions: &'a Conditions) -> Option<Self> {
         let actuator = &conditions.plant.actuator;
         let source = Source::new(conditions);
         let late_or_exact = match &conditions.assist {
             Assist::Firmware(_) if source.law().is_some() => {
-                conditions.plant.reads_exactly()
-                    && actuator.time_constant_s == 0.0
-                    && actuator.supply.is_none()
+                conditions.plant.reads_exactly() && actuator.supply.is_none()
             }
             Assist::None => true,
             _ => conditions.plant.exact() && conditions.sensor_delay_ticks == 0,
         };
         let bare = late_or_exact && !actuator.friction.acts() && actuator.stop.is_none();
         let longest_s = if source.sampled().is_some() { controller::LONGEST_S } else { LONGEST_S };
-        let late_s = source.law().and_then(|law| law.late).map_or(f64::INFINITY, |late| late.delay_s);
-        let longest_s = longest_s.min(late_s);
         let monitored = source.sampled().is_some() && hardware::needed(conditions);
         let longest_s = conditions.rider.as_ref().map_or(longest_s, riders::longest_step_s).min(longest_s);
         if !bare || longest_s < WORTH * conditions.step_s {
@@ -194,11 +192,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     let mut state = Aligned(State::upright(b, still));
     let mut initial = still;
     let mut slopes = [still; 2];
-    // The exact ride interpolates between the samples before and after a jump.
-    let jump_s = source
-        .law()
-        .and_then(|law| law.late)
-        .map_or(f64::INFINITY, |late| late.arrives_s - 0.5 * conditions.step_s);
+    let jump_s = source.law().map_or(f64::INFINITY, LateLaw::jump_s);
     let mut riders = conditions.rider.as_ref().map(|rider| QuickRiders::<N>::new(rider, jump_s));
     let mut controllers = source.sampled().map(|plan| Controllers::<N>::new(conditions, plan));
     let mut limited = source.law().and_then(Limited::<N>::new);
@@ -319,7 +313,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 let mut rider = riders.as_mut().map(|riders| riders.one(lane, (ride.t, h)));
                 let given = match (&controllers, &mut limited) {
                     (Some(controllers), _) => Given::Line(controllers.line.of(lane)),
-                    (None, Some(limited)) => Given::Limited(limited.one(lane, ride.t)),
+                    (None, Some(limited)) => Given::Limited(limited.one(lane)),
                     (None, None) => Given::Law,
                 };
                 let at = (initial.0[lane], &mut slope, given);
