@@ -28,8 +28,6 @@ use crate::sensors::validation::{self, ValidationState};
 pub struct State {
     /// Time of the previous frame \[us\].
     previous_us: Option<u32>,
-    /// Number of control periods in succession that were shorter than half of one, by their times.
-    short_periods: u16,
     validation: ValidationState,
     estimate: EstimateState,
     cross_check: CrossCheckState,
@@ -42,8 +40,12 @@ pub struct State {
     guard: GuardState,
     /// Limits that were active in the previous period.
     active_limits: ActiveLimits,
-    /// Causes of the guard in the previous period.
-    guard_causes: Causes,
+    /// Number of control periods in succession that were shorter than half of one, by their times.
+    short_periods: u16,
+    /// End of the last of them \[us\].
+    short_period_us: u32,
+    /// Causes for the next permission: of the guard in the previous period, and of a clock that stands.
+    pending_causes: Causes,
     roll: Roll,
     smooth: SmoothState,
     history: History,
@@ -114,16 +116,14 @@ impl State {
 /// One control period: computes the motor torque from the sensors' samples of this instant.
 ///
 /// Without a valid roll rate or speed the law requests zero torque, reached at the rate limit. In the modes before
-/// standby, and on any violation found by the guard, the torque is zero at once.
+/// standby, while the clock stands, and on any violation found by the guard, the torque is zero at once.
 pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let config = &plan.config;
     let elapsed_us = state.previous_us.map_or(plan.period_us, |previous| frame.now_us.wrapping_sub(previous));
     state.previous_us = Some(frame.now_us);
-    state.short_periods =
-        if elapsed_us < plan.period_us / 2 { state.short_periods.saturating_add(1) } else { 0 };
-    let clock_stands = state.short_periods > plan.most_short_periods;
-    // The number of calls is then the only clock, and the torque must still be able to fall.
-    let elapsed_us = if clock_stands { plan.period_us } else { elapsed_us };
+    if elapsed_us < plan.period_us / 2 {
+        note_short_period(plan, state, frame.now_us, elapsed_us);
+    }
     let last_torque_nm = state.torque_nm();
 
     let measurements = validation::step(
@@ -152,8 +152,8 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let sign_causes =
         sign_check::step(&plan.sign_check, &mut state.sign_check, &measurements, &motion, last_torque_nm);
     let mut causes =
-        measurements.causes.with(cross_checked.causes).with(sign_causes).with(state.guard_causes);
-    causes.note(Cause::Timing, clock_stands || elapsed_us as f32 > plan.max_gap_us);
+        measurements.causes.with(cross_checked.causes).with(sign_causes).with(state.pending_causes);
+    causes.note(Cause::Timing, elapsed_us > plan.max_gap_us);
 
     let speed = speed(plan, &measurements, &cross_checked);
     let aligned = match (measurements.gyro_rad_s(), speed) {
@@ -250,13 +250,27 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         0.0
     });
     state.active_limits = limits;
-    state.guard_causes = guard_result.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
+    state.pending_causes = guard_result.err().map_or(Causes::NONE, |violation| Causes::of(violation.cause()));
     Command {
         torque_nm: plan.calibration.motor(torque_nm),
         gain_nm_s_rad: if permission.authority > 0.0 { gain } else { 0.0 },
         limits,
         mode: permission.mode,
-        causes: permission.causes.with(state.guard_causes),
+        causes: permission.causes.with(state.pending_causes),
+    }
+}
+
+/// Counts a short period that ends now. After too many in succession the clock stands: no rate of change can be kept, and the torque
+/// is zero at once.
+#[cold]
+#[inline(never)]
+fn note_short_period(plan: &Plan, state: &mut State, now_us: u32, elapsed_us: u32) {
+    let after_another = now_us.wrapping_sub(elapsed_us) == state.short_period_us;
+    state.short_periods = if after_another { state.short_periods.saturating_add(1) } else { 1 };
+    state.short_period_us = now_us;
+    if state.short_periods > plan.most_short_periods {
+        (state.limiter, state.guard) = (LimiterState::default(), GuardState::default());
+        state.pending_causes.note(Cause::Timing, true);
     }
 }
 

@@ -23,10 +23,8 @@ use crate::sensors::validation::ValidationPlan;
 pub struct Plan {
     pub(crate) period_s: f32,
     pub(crate) period_us: u32,
-    /// Longest time between two steps, a whole number \[us\]; infinite without a limit.
-    pub(crate) max_gap_us: f32,
-    /// Number of short control periods in succession that are no fault; of all numbers the largest without a limit.
-    pub(crate) most_short_periods: u16,
+    /// Longest time between two steps \[us\]; the largest number without a limit.
+    pub(crate) max_gap_us: u32,
     pub(crate) calibration: CalibrationPlan,
     pub(crate) validation: ValidationPlan,
     pub(crate) cross_check: CrossCheckPlan,
@@ -42,6 +40,8 @@ pub struct Plan {
     pub(crate) polarity_gain_nm_s_rad: f32,
     /// Whether any function needs the estimated motion; otherwise the sensors' values are used as they are.
     pub(crate) needs_estimate: bool,
+    /// Number of short control periods in succession that are no fault; the largest number without a limit.
+    pub(crate) most_short_periods: u16,
     pub(crate) config: Config,
 }
 
@@ -67,13 +67,12 @@ impl Plan {
     fn new(config: Config) -> Self {
         let c = &config;
         // Rounded, as 1e3 times 0.502 is below 502.
-        let max_gap_us = c.input.max_gap_ms.map_or(f32::INFINITY, |ms| (1e3 * ms + 0.5) as u32 as f32);
+        let max_gap_us = c.input.max_gap_ms.map_or(u32::MAX, |ms| (1e3 * ms + 0.5) as u32);
         Self {
             period_s: 1.0 / c.rate_hz,
             period_us: (1e6 / c.rate_hz) as u32,
             max_gap_us,
-            // The cast of infinity is the largest number.
-            most_short_periods: (max_gap_us / (1e6 / c.rate_hz)) as u16,
+            most_short_periods: (max_gap_us as f32 / (1e6 / c.rate_hz)) as u16,
             calibration: c.calibration.plan(),
             validation: ValidationPlan::new(&c.input, 1.0 / c.rate_hz),
             cross_check: CrossCheckPlan::new(&c.cross, &c.estimate.balance, c.rate_hz),

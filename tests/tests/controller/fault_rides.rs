@@ -62,19 +62,16 @@ fn long_periods_and_a_standing_clock_are_timing_faults() {
 
 /// Situation: the assist acts on a knock; the clock stands from 0.2 s on.
 /// Action: nothing else, the gyro missing from 0.203 s, or the switch open from then.
-/// Must hold: the torque falls at its limit, to zero within the ramp-out, and remains zero: it does not stay at its last value because no
-/// time passes.
+/// Must hold: the torque acts before, is zero from 6 ms on, and remains zero: it does not stay at its last value because no time
+/// passes.
 #[test]
 fn a_standing_clock_ends_the_torque() {
     for other in [None, Some("gyro:missing@203ms"), Some("engage:missing@203ms")] {
-        let faults =
-            ["clock:stuck@200ms"].into_iter().chain(other).map(|text| text.parse().unwrap()).collect();
+        let faults = ["clock:stuck@200ms"].into_iter().chain(other).map(|text| text.parse().unwrap()).collect();
         let trace = traced(&ridden(Plant { faults, ..Plant::default() }), KNOCK).1;
         let at = |s: f64| trace.iter().find(|p| p.t >= s).map_or(0.0, |p| p.torque);
         assert!(at(0.2).abs() > 0.5, "{other:?}: {} N m before", at(0.2));
-        assert!(trace.iter().filter(|p| p.t > 0.42).all(|p| p.torque == 0.0), "{other:?}");
-        let steps = trace.windows(2).map(|pair| (pair[1].torque - pair[0].torque).abs());
-        assert!(steps.fold(0.0, f64::max) < 0.21, "{other:?}");
+        assert!(trace.iter().filter(|p| p.t > 0.2065).all(|p| p.torque == 0.0), "{other:?}");
     }
 }
 
