@@ -4,8 +4,10 @@ use sim_host::bicycle::ForcePoint;
 use sim_host::bicycle::catalogue;
 use sim_host::bicycle::linear::Linear;
 use sim_host::identify::{
-    Disturbances, Drift, GrayBox, Hold, Measured, PerGain, Record, Signal, autocorrelation,
-    cross_correlation, impulse_response, independent_band, white_band,
+    Disturbances, Drift, GrayBox, Hold, Measured, PerGain, Record, Signal, impulse_response,
+};
+use sim_host::report::identify::correlation::{
+    autocorrelation, cross_correlation, independent_band, white_band,
 };
 use sim_host::rider::Neuromuscular;
 use tests::knock::SplitMix64;

@@ -6,11 +6,11 @@ use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
 /// 97.5 % quantile of the normal distribution: the half width of a 95 % interval in standard deviations.
-pub(super) const NORMAL_95: f64 = 1.959_963_984_540_054;
+pub const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Cross-correlation coefficient of `a[k]` and `b[k + lag]` at the lags from `-reach` to `reach`, from -1 to 1: mean product
 /// over the samples that both have, in standard deviations. Samples that are not finite are missing; zero without any.
-pub(super) fn cross_correlation(a: &[f64], b: &[f64], reach: usize) -> Vec<f64> {
+pub fn cross_correlation(a: &[f64], b: &[f64], reach: usize) -> Vec<f64> {
     let count = a.len().min(b.len());
     let ([a, has_a], [b, has_b]) = (centred(&a[..count]), centred(&b[..count]));
     let power = |x: &[f64], has: &[f64]| x.iter().map(|x| x * x).sum::<f64>() / has.iter().sum::<f64>();
@@ -24,19 +24,19 @@ pub(super) fn cross_correlation(a: &[f64], b: &[f64], reach: usize) -> Vec<f64> 
 }
 
 /// Autocorrelation coefficient at the lags from 0 to `reach`.
-pub(super) fn autocorrelation(values: &[f64], reach: usize) -> Vec<f64> {
+pub fn autocorrelation(values: &[f64], reach: usize) -> Vec<f64> {
     cross_correlation(values, values, reach).split_off(reach)
 }
 
 /// Half width of the 95 % band of the autocorrelation of white noise with as many samples as `values` has.
-pub(super) fn white_band(values: &[f64]) -> f64 {
+pub fn white_band(values: &[f64]) -> f64 {
     NORMAL_95 / (values.iter().filter(|x| x.is_finite()).count().max(1) as f64).sqrt()
 }
 
 /// Half width of the 95 % band of the cross-correlation of sequences that are independent of each other and coloured like `a`
 /// and `b`: its variance is the sum of the product of both autocorrelations over the number of samples, here up to `reach`
 /// lags with Bartlett's window.
-pub(super) fn independent_band(a: &[f64], b: &[f64], reach: usize) -> f64 {
+pub fn independent_band(a: &[f64], b: &[f64], reach: usize) -> f64 {
     let (of_a, of_b) = (autocorrelation(a, reach), autocorrelation(b, reach));
     let window = |lag: usize| 1.0 - lag as f64 / (reach + 1) as f64;
     let sum: f64 = (1..=reach).map(|lag| window(lag) * of_a[lag] * of_b[lag]).sum();

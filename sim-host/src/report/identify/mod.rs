@@ -1,7 +1,7 @@
 //! Document, table, text, figure and page of `sim-host identify RECORD`.
 
 mod chart;
-mod correlation;
+pub mod correlation;
 mod document;
 mod page;
 mod plots;
