@@ -103,15 +103,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let compute = || pool.install(|| task.run(picture.is_some(), column, hooks));
     let found = picture.as_ref().map_or_else(compute, |picture| picture.during(compute))?;
     bar.finish_and_clear();
-    let ended = write(&task.setup, &outputs, &found, pool.current_num_threads(), "")?;
-    if let (Ended::Done, Some(drawn)) = (&ended, &found.drawn)
-        && drawn.of.basins.len() < drawn.count
-    {
-        let (done, all) = (drawn.of.basins.len(), drawn.count);
-        complain(&format!("interrupted: {done} of {all} draws are done and kept"));
-        return Ok(Ended::Interrupted);
-    }
-    Ok(ended)
+    write(&task.setup, &outputs, &found, pool.current_num_threads(), "")
 }
 
 /// Writes a complete or partial basin, searched by `threads`; `extra` is added to the text.
@@ -169,12 +161,14 @@ pub(super) fn write(
     })?;
     written?;
     if complete {
-        Ok(Ended::Done)
-    } else {
-        let (done, all) = (result.columns.len(), search.speeds.len());
-        complain(&format!("interrupted: {done} of {all} speeds are done and kept"));
-        Ok(Ended::Interrupted)
+        return Ok(Ended::Done);
     }
+    let (done, all, what) = match &found.drawn {
+        Some(drawn) if found.every_speed() => (drawn.of.basins.len(), drawn.count, "draws"),
+        _ => (result.columns.len(), search.speeds.len(), "speeds"),
+    };
+    complain(&format!("interrupted: {done} of {all} {what} are done and kept"));
+    Ok(Ended::Interrupted)
 }
 
 /// The result as text.

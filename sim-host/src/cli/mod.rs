@@ -152,6 +152,7 @@ enum Command {
 /// Runs the program: arguments from the process, results to standard output, errors to standard error.
 pub fn run() -> ExitCode {
     let cli = Cli::parse();
+    interrupt::handle_signals();
     if let Err(why) = inputs::refuse_overwriting(std::env::args_os().skip(1)) {
         outputs::complain(&format!("error: {why}"));
         return ExitCode::from(1);

@@ -78,8 +78,14 @@ impl BasinTask {
 
 impl Searched {
     /// Whether every speed is searched.
-    pub fn complete(&self) -> bool {
+    pub fn every_speed(&self) -> bool {
         self.basin.columns.len() == self.search.speeds.len()
+    }
+
+    /// Whether every speed is searched, and every draw.
+    pub fn complete(&self) -> bool {
+        let all = |drawn: &DrawnBasins| drawn.of.basins.len() == drawn.count;
+        self.every_speed() && self.drawn.as_ref().is_none_or(all)
     }
 
     /// The results for draws, if any is finished.
@@ -92,7 +98,8 @@ impl Searched {
         let adaptive_speeds = setup.scenario.search.adaptive_speeds;
         let search = ResolvedSearch { adaptive_speeds, ..ResolvedSearch::new(&self.search) };
         let parts = (setup.config.clone(), search, setup.scenario.clone());
-        let document = BasinDocument::new(parts, &self.search.speeds, &self.basin, self.seconds);
+        let found = BasinDocument::new(parts, &self.search.speeds, &self.basin, self.seconds);
+        let document = BasinDocument { complete: self.complete(), ..found };
         match self.drawn() {
             Some(drawn) => drawn.add_to(document),
             None => document,

@@ -253,7 +253,7 @@ pub struct BasinDocument {
     pub config: ResolvedConfig,
     /// The search.
     pub search: ResolvedSearch,
-    /// False after an interruption; some heights and all measures are then null.
+    /// False after an interruption: some heights and all measures are then null, or there are fewer draws than requested.
     pub complete: bool,
     /// Forward speeds \[m/s\].
     pub speeds: Vec<f64>,

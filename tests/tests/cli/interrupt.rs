@@ -141,6 +141,45 @@ fn a_sigterm_preserves_completed_results() {
     assert!((1..400).contains(&units()), "{}", units());
 }
 
+/// Situation: a basin with many drawn riders, that of the table done.
+/// Action: Ctrl-C.
+/// Must hold: exit code 130; the finished draws are kept, and the document, which has fewer than requested, is not complete.
+#[test]
+fn an_interrupted_band_is_not_complete() {
+    let bench = Bench::new(PROGRAM);
+    let quick = "--speeds 4:5:1 --time-limit 0.5 --scan-step 10 --tolerance 5";
+    let mut child = spawn(
+        &bench,
+        &format!("basin {quick} --rider young --rider-draws 10000 --json out.json --csv out.csv"),
+    );
+    wait_for_work(&mut child);
+    press_ctrl_c(&child);
+    let run = Run::from(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "{run:?}");
+    assert!(run.stderr.contains(" of 10000 draws are done and kept"), "{}", run.stderr);
+    let document: Value = serde_json::from_str(&bench.read("out.json")).unwrap();
+    assert!(document["rider_draws"]["draws"].as_u64().unwrap_or(0) < 10000, "{}", document["rider_draws"]);
+    assert_eq!(document["complete"], false);
+    assert!(document["area"].is_number() && bench.read("out.csv").contains("\"complete\":false"));
+}
+
+/// Situation: commands that keep nothing, each under way for minutes.
+/// Action: Ctrl-C; SIGTERM.
+/// Must hold: exit code 130 at once, not the signal's; nothing is written.
+#[test]
+fn commands_that_keep_nothing_end_at_the_first_signal() {
+    let bench = Bench::new(PROGRAM);
+    let ride = "ride --speed 6 --steer-rate 0.1 --time-limit 3600 --json new.json";
+    let record = "record --rider young --speed 5 --duration 3600 --out new.csv";
+    for (line, signal) in [(ride, "INT"), (ride, "TERM"), (record, "INT"), (record, "TERM")] {
+        let mut child = spawn(&bench, line);
+        wait_for_work(&mut child);
+        send(signal, &child);
+        let run = Run::from(child.wait_with_output().unwrap());
+        assert_eq!((run.code, bench.files()), (Some(130), vec![]), "{line}, {signal}: {run:?}");
+    }
+}
+
 /// Situation: a column that takes minutes, results going to a new and to an older file.
 /// Action: Ctrl-C twice.
 /// Must hold: exit code 130 at once; the older file unchanged, nothing new.
