@@ -35,7 +35,7 @@ pub struct DesignDocument {
     pub smoothness: f64,
     /// Torque limit \[N m\].
     pub torque_limit_nm: Option<f32>,
-    /// Torque rate limit \[N m/s\].
+    /// Limit of the torque's rise \[N m/s\]; its fall has the product's limit, 200 N m/s.
     pub rate_limit_nm_s: Option<f32>,
     /// When a ride counts as fallen.
     pub fall: FallCriterion,

@@ -215,7 +215,7 @@ pub struct ResolvedConfig {
     pub imu: String,
     /// Torque limit \[N m\]; null if off.
     pub torque_limit_nm: Option<f32>,
-    /// Torque rate limit \[N m/s\]; null if off.
+    /// Limit of the torque's rise \[N m/s\]; null if off. The limit of its fall is `limits.fall_nm_s` of `parameters`.
     pub rate_limit_nm_s: Option<f32>,
     /// Taper below walking speed: torque zero at the first speed, full at the second \[m/s\].
     pub taper_m_s: Option<(f32, f32)>,

@@ -101,7 +101,7 @@ pub const CONDITIONS: &[Setting] = &[
         key: "rate_limit_nm_s",
         long_name: "largest change of torque of the assist",
         value: "NM/S|none",
-        help: "Largest change of torque in N m/s, or none [default: none; product: 100]",
+        help: "Largest change of torque in N m/s, or none [default: none; product: 100 rising, 200 falling]",
         set: |s, text| {
             s.rate_limit_nm_s = Some(text::limit(text)?);
             s.parameters.remove("limits.rise_nm_s");
