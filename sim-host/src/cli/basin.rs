@@ -32,7 +32,7 @@ Examples:
   sim-host basin --rider young --delay 60ms --gains best
   sim-host basin --law cl2:4 --assist ideal --schedule-speed rear
   sim-host basin --preset product --sensor-delay 20ms --csv product.csv
-  sim-host basin --bicycle data/bicycles/Rigid+Jason --speeds 2:8:0.5 --uncertain 50 --svg band.svg
+  sim-host basin --bicycle tests/data/bicycleparameters/bicycles/Rigid+Jason --uncertain 50
   sim-host basin --rider young --rider-draws 100 --gains spline --svg band.svg
   sim-host basin --bicycle my.toml#city --axis roll-rate --max-rate 5
   sim-host basin compare 'young=--rider young' 'smart=--rider smart' --svg riders.svg

@@ -30,7 +30,7 @@ mod riders;
 mod same_bytes;
 mod scenario;
 mod smoothing;
-
+mod stated;
 mod study;
 mod sweep;
 mod sweep_shared;

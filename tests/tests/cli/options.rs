@@ -53,6 +53,8 @@ fn defaults_and_presets_are_as_documented() {
     let product = json!({"torque_limit_nm": 7.0, "rate_limit_nm_s": 100.0, "taper_m_s": [0.5, 1.5]});
     let flashed = config("--preset product");
     assert_eq!(flashed["law"]["name"], json!("h-cut"));
+    // Twice as fast falling.
+    assert_eq!(flashed["parameters"]["limits.fall_nm_s"], json!("200"));
     expect(flashed, product);
     expect(
         config("--preset product --torque-limit none --rate-limit 50 --taper 1:2 --sensor-delay 20ms"),
