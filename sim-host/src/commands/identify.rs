@@ -257,19 +257,22 @@ fn config(choice: &IdentifyChoice, problem: &Problem, plan: &Plan) -> ResolvedId
 fn table_of(name: &str, bicycle: &Bicycle, found: &Identified) -> Result<RiderTable, Failure> {
     let fit = found.fit();
     let model = &found.problem.model;
+    let unknown = found.errors_unknown();
     let row = Row {
         speed_m_s: model.speed_m_s,
         run: None,
         group: 1,
         vaf: Some(100.0 * fit.mean_vaf()),
         gains: Gains::of_states(&fit.gains),
-        covariance: found.has_errors().then(|| Covariance::new(&fit.covariance, &fit.active)).transpose()?,
+        covariance: match unknown {
+            Some(_) => None,
+            None => Some(Covariance::new(&fit.covariance, &fit.active)?),
+        },
     };
     Ok(RiderTable {
         name: "identified".into(),
         source: Some(format!("identified from {name}")),
-        note: (!found.has_errors())
-            .then(|| "not refined on the nonlinear bicycle: the gains' errors are not known".into()),
+        note: unknown.map(|why| format!("{why}: the gains' errors are not known")),
         bicycle: Some(bicycle.name.clone()),
         delay_s: model.delay_s,
         neuromuscular: model.neuromuscular,

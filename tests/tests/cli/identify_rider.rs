@@ -53,7 +53,7 @@ fn a_record_becomes_a_rider() {
     let vaf = document["vaf"].as_f64().expect("a number");
     assert!((0.95..1.0).contains(&vaf), "{vaf}");
     assert_eq!((&document["delay_s"], &document["rider_file"]), (&json!(0.03), &json!("rider.toml")));
-    assert_eq!(document["refined"], json!(true));
+    assert_eq!((&document["refined"], &document["warnings"]), (&json!(true), &json!([])));
     let delay = &document["delay"]["estimate_s"].as_f64().expect("an estimate");
     assert!((0.02..0.04).contains(delay), "{delay}");
     assert!(!document["optima"].as_array().expect("optima").is_empty());
@@ -79,6 +79,42 @@ fn a_record_becomes_a_rider() {
     assert!(bench.read("o.svg").contains("of the variance accounted for"));
     let text = bench.run(&format!("identify run.csv {FIVE} --linear"));
     assert!(text.stdout.contains("K_phi_p") && text.stdout.contains("(linear bicycle)"), "{}", text.stdout);
+}
+
+/// Situation: a record with a remnant stronger than the response, whose likeliest gains are far from the rider's and make an
+/// unstable loop; another optimum is nearly as likely.
+/// Action: identify.
+/// Must hold: neither document nor rider's file has standard errors or covariances, and both state why; the warnings name the
+/// signal to noise, the instability and the other optimum, whose drop of the log-likelihood is that of the VAFs.
+#[test]
+fn an_unstable_fit_has_no_standard_errors() {
+    let bench = Bench::new(PROGRAM);
+    let noise = "--remnant 0.5 --steer-noise 0.001 --roll-noise 0.002 --roll-rate-noise 0.01 --seed 1";
+    bench.run(&format!("record --rider young --speed 5 {noise} --out run.csv"));
+    let document = bench.json("identify run.csv --delay 30ms --reduce-until none --out rider.toml");
+    assert!(document["rightmost_eigenvalue_1_s"].as_f64().is_some_and(|real| real > 1e-3), "{document}");
+    assert!(document["covariance"].is_null());
+    let errors = |gains: &Value| -> Vec<Value> {
+        gains.as_object().expect("gains").values().map(|gain| gain["std_error"].clone()).collect()
+    };
+    assert_eq!(errors(&document["gains"]), vec![Value::Null; 8]);
+    assert_eq!(errors(&document["reduction"][0]["gains"]), vec![Value::Null; 8]);
+    assert_eq!(document["not_identified"], json!([]));
+    let rider = bench.read("rider.toml");
+    assert!(!rider.contains("covariances") && rider.contains("the closed loop of these gains is unstable"));
+    let warnings = document["warnings"].to_string();
+    for word in ["signal to noise of steer is 0.77", "unstable", "another optimum", "K_delta_i is 134.7"] {
+        assert!(warnings.contains(word), "{word}: {warnings}");
+    }
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let optima = &document["optima"];
+    let rest = [0, 1].map(|i| 1.0 - number(&optima[i]["vaf"]));
+    let expected = number(&document["independent_samples"]) / 2.0 * (rest[1] / rest[0]).ln();
+    let drop = number(&optima[1]["log_likelihood_drop"]);
+    assert!((drop / expected - 1.0).abs() < 0.1 && drop < 1.92, "{drop} {expected}");
+    assert_eq!(number(&optima[0]["log_likelihood_drop"]), 0.0);
+    let draws = bench.run("basin --rider rider.toml --rider-draws 5 --speeds 5");
+    assert!(draws.code == Some(1) && draws.stderr.contains("covariances"), "{}", draws.stderr);
 }
 
 /// Situation: two records, a file that is none, and a folder for the results.

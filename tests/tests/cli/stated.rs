@@ -111,3 +111,26 @@ fn strong_pushes_throw_the_riders_that_the_page_names() {
     assert_eq!(falls.len(), 1, "{falls:?}");
     states("docs/riders.md", &format!("With 200 N only {} falls", falls[0]));
 }
+
+/// Situation: the noisy record of docs/riders.md.
+/// Action: identify its rider.
+/// Must hold: no warning; the signal to noise and the largest error, in standard errors, are those of the page.
+#[test]
+fn the_record_of_the_page_gives_its_rider() {
+    let bench = Bench::new(PROGRAM);
+    let text = page("docs/riders.md").replace("\\ ", "");
+    let at = text.find("sim-host record --rider young --speed 5 --remnant").expect("the command");
+    let command = text[at..].split("```").next().expect("a block").trim_start_matches("sim-host ");
+    assert_eq!(bench.run(command).code, Some(0), "{command}");
+    let truth: Value = serde_json::from_str(&bench.read("noisy.json")).expect("JSON");
+    let document = bench.json("identify noisy.csv --delay 30ms --reduce-until none");
+    assert_eq!(document["warnings"], serde_json::json!([]));
+    let gains = document["gains"].as_object().expect("gains").iter();
+    let errors = gains.map(|(name, gain)| {
+        (number(&gain["value"]) - number(&truth["gains"]["gains"][name])) / number(&gain["std_error"])
+    });
+    let largest = errors.map(f64::abs).fold(0.0, f64::max);
+    let to_noise = number(&document["black_box"][0]["signal_to_noise"]);
+    let found = format!("within {largest:.1} standard errors, at a signal to noise of {to_noise:.1}");
+    states("docs/riders.md", &found);
+}

@@ -15,6 +15,9 @@ use nalgebra::{DMatrix, DVector, RowDVector};
 /// (Kuipers 2020, chapter 5: the variance accounted for over a long record misjudges it).
 pub const AFTER_ONSET_S: f64 = 1.0;
 
+/// Growth from which a closed loop counts as unstable \[1/s\]: less is not noticed in a ride.
+const UNSTABLE_1_S: f64 = 1e-3;
+
 /// A record with the model that is fitted to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Problem {
@@ -41,6 +44,9 @@ pub struct LocalOptimum {
     pub vaf_after_onset: Option<Vec<(Signal, f64)>>,
     /// Real part of the closed loop's rightmost eigenvalue \[1/s\].
     pub rightmost_1_s: f64,
+    /// Drop of the log-likelihood below the best optimum's, with as many independent residuals; a 95 % interval ends at
+    /// [`DROP_95`](super::DROP_95).
+    pub drop: f64,
     /// The number of starts that led here.
     pub starts: usize,
 }
@@ -87,6 +93,12 @@ pub enum From<'a> {
 }
 
 impl Fit {
+    /// Whether the closed loop is stable, or grows too slowly to be noticed in a ride. The growth of an unstable one is
+    /// exponential in the gains, which a covariance takes as linear.
+    pub fn is_stable(&self) -> bool {
+        self.rightmost_1_s <= UNSTABLE_1_S
+    }
+
     /// Standard error of each gain; zero for gains that are not fitted.
     pub fn standard_errors(&self) -> PerGain {
         let mut errors = PerGain::default();
@@ -118,15 +130,19 @@ impl Fit {
     /// Twice the negative logarithm of the likelihood of normal residuals, but for a constant, if each signal has the
     /// `independent` number of independent ones: `sum n ln(mean square)`.
     pub fn deviance(&self, independent: &[f64]) -> f64 {
-        let of =
-            |(residuals, n): (&Residuals, &f64)| n * libm::log(residuals.mean_square.max(f64::MIN_POSITIVE));
-        self.residuals.iter().zip(independent).map(of).sum()
+        deviance(self.residuals.iter().map(|residuals| residuals.mean_square), independent)
     }
 
     /// Correlation of two fitted gains, by their place in `active`.
     pub fn correlation(&self, i: usize, j: usize) -> f64 {
         self.covariance[(i, j)] / (self.covariance[(i, i)] * self.covariance[(j, j)]).sqrt()
     }
+}
+
+/// `sum n ln(mean square)` over the signals.
+fn deviance(mean_squares: impl IntoIterator<Item = f64>, independent: &[f64]) -> f64 {
+    let of = |(mean_square, n): (f64, &f64)| n * libm::log(mean_square.max(f64::MIN_POSITIVE));
+    mean_squares.into_iter().zip(independent).map(of).sum()
 }
 
 /// Integral gains below this fraction of [`TYPICAL`] count as zero: their eigenvalue would be zero but for rounding.
@@ -255,8 +271,16 @@ impl Problem {
             uncertainty(&objective, &at, self.record.disturbances.sample_s)
                 .ok_or_else(|| FitError::Inseparable(names(active)))?;
         let means = objective.mean_squares(&at);
+        let best_deviance = deviance(means.iter().copied(), &independent);
+        let drop = |end: &Optimum| {
+            let at = objective.evaluate(&end.found.gains, &[]);
+            at.map_or(f64::INFINITY, |at| {
+                (deviance(objective.mean_squares(&at), &independent) - best_deviance) / 2.0
+            })
+        };
+        let optima: Vec<LocalOptimum> =
+            ends.iter().map(|end| self.local(&objective, end, drop(end))).collect();
         let residuals = means.into_iter().zip(independent);
-        let optima: Vec<LocalOptimum> = ends.iter().map(|end| self.local(&objective, end)).collect();
         Ok(Fit {
             active: active.to_vec(),
             covariance,
@@ -272,7 +296,7 @@ impl Problem {
         })
     }
 
-    fn local(&self, objective: &Objective, end: &Optimum) -> LocalOptimum {
+    fn local(&self, objective: &Objective, end: &Optimum, drop: f64) -> LocalOptimum {
         let gains = end.found.gains;
         let signals = self.record.measured.iter().map(|measured| measured.signal);
         let of = |within: &dyn Fn(usize) -> bool| -> Vec<(Signal, f64)> {
@@ -285,6 +309,7 @@ impl Problem {
             vaf: of(&|_| true),
             vaf_after_onset: disturbed.then(|| of(&|k| after[k])),
             rightmost_1_s: rightmost_real(&self.model, &gains),
+            drop,
             starts: end.starts,
         }
     }

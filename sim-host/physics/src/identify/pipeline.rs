@@ -68,10 +68,15 @@ impl Identified {
         }
     }
 
-    /// Whether the standard errors of [`Self::fit`] hold: not if the requested refinement failed, because the linear
-    /// bicycle's error may be several times larger.
-    pub fn has_errors(&self) -> bool {
-        !matches!(self.refined, Some(Err(_)))
+    /// Why the standard errors of [`Self::fit`] are not known; `None` if they are. If the requested refinement failed, the
+    /// linear bicycle's error may be several times larger; an unstable loop is no linear function of its gains, and often
+    /// the wrong one of several optima.
+    pub fn errors_unknown(&self) -> Option<&'static str> {
+        match &self.refined {
+            Some(Err(_)) => Some("not refined on the nonlinear bicycle"),
+            _ if !self.fit().is_stable() => Some("the closed loop of these gains is unstable"),
+            _ => None,
+        }
     }
 
     /// Response of the selected fit: roll \[rad\], steer \[rad\] and roll rate \[rad/s\] at each sample.

@@ -76,7 +76,8 @@ pub struct ResolvedIdentify {
 pub struct GainValue {
     /// The gain: N m per rad, rad s, rad/s, rad/s^2 (roll, then steer).
     pub value: f64,
-    /// Its standard error; null for gains that could not be refined on the nonlinear bicycle, whose error is not known.
+    /// Its standard error; null where it is not known: for gains that could not be refined on the nonlinear bicycle, and for
+    /// those of an unstable closed loop.
     pub std_error: Option<f64>,
 }
 
@@ -98,6 +99,8 @@ pub struct OptimumEntry {
     pub vaf: f64,
     /// The same within a second of the perturbations' onsets; null if the record has none.
     pub vaf_after_onset: Option<f64>,
+    /// Drop of the log-likelihood below the best optimum's; 1.92 at the ends of a 95 % interval.
+    pub log_likelihood_drop: f64,
     /// Real part of the closed loop's rightmost eigenvalue \[1/s\]; positive if unstable.
     pub rightmost_eigenvalue_1_s: f64,
     /// The number of starts of the search that led here.
@@ -229,7 +232,7 @@ pub struct IdentifyDocument {
     pub independent_samples: f64,
     /// Why the gains may be wrong by more than their standard errors say; empty if nothing was noticed.
     pub warnings: Vec<String>,
-    /// Gains that the record does not determine.
+    /// Gains that the record does not determine; empty without standard errors, which tell.
     pub not_identified: Vec<Unidentified>,
     /// The distinct optima of the full fit, best first.
     pub optima: Vec<OptimumEntry>,
@@ -292,16 +295,18 @@ impl IdentifyDocument {
         found: &Identified,
     ) -> Self {
         let fit = found.fit();
+        let known = found.errors_unknown().is_none();
         let all = &found.steps[0].fit;
         let optimum = |optimum: &LocalOptimum| OptimumEntry {
             gains: named(&optimum.gains, &all.active),
             vaf: mean(&optimum.vaf),
             vaf_after_onset: optimum.vaf_after_onset.as_deref().map(mean),
+            log_likelihood_drop: optimum.drop,
             rightmost_eigenvalue_1_s: optimum.rightmost_1_s,
             starts: optimum.starts,
         };
         let step = |step: &Step| ReductionEntry {
-            gains: values(&step.fit, true),
+            gains: values(&step.fit, step.fit.is_stable()),
             vaf: step.fit.mean_vaf(),
             vaf_after_onset: step.fit.vaf_after_onset.as_deref().map(mean),
             vaf_cross_validated: step.cross_validated_vaf,
@@ -339,9 +344,8 @@ impl IdentifyDocument {
             record,
             bicycle,
             config,
-            gains: values(fit, found.has_errors()),
-            covariance: found
-                .has_errors()
+            gains: values(fit, known),
+            covariance: known
                 .then(|| fit.covariance.row_iter().map(|row| row.iter().copied().collect()).collect()),
             covariance_of: fit.active.iter().map(|i| symbols()[*i]).collect(),
             vaf: fit.mean_vaf(),
@@ -353,7 +357,7 @@ impl IdentifyDocument {
             condition: fit.condition,
             independent_samples: fit.residuals.iter().map(|residuals| residuals.independent).sum(),
             warnings: warnings(found),
-            not_identified: unidentified(fit),
+            not_identified: if known { unidentified(fit) } else { Vec::new() },
             optima: all.optima.iter().map(optimum).collect(),
             reduction: found.steps.iter().map(step).collect(),
             selected: found.selected,

@@ -1,7 +1,9 @@
 //! What is doubtful about an identified rider: warnings about the fit, and gains that the record does not determine.
 
+use super::correlation::NORMAL_95;
 use super::document::Unidentified;
-use crate::identify::{Fit, Identified, symbols};
+use super::text::number;
+use crate::identify::{DROP_95, Fit, Identified, LocalOptimum, PerGain, symbols};
 
 /// Relative standard error above which a gain is not identified: its 95 % interval contains zero.
 const LOOSE: f64 = 0.5;
@@ -10,8 +12,8 @@ const TOGETHER: f64 = 0.95;
 
 /// Share of a signal that the black box explains and the model does not, from which the model counts as wrong.
 const MISSED: f64 = 0.05;
-/// Growth from which a closed loop counts as unstable \[1/s\]: less is not noticed in a ride.
-const UNSTABLE_1_S: f64 = 1e-3;
+/// Signal to noise below which errors are larger than their standard errors say (docs/identify.md, "Measured").
+const LOW_SIGNAL_TO_NOISE: f64 = 1.5;
 
 /// Why the gains may be wrong by more than their standard errors.
 pub(super) fn warnings(found: &Identified) -> Vec<String> {
@@ -24,22 +26,56 @@ pub(super) fn warnings(found: &Identified) -> Vec<String> {
         ));
     }
     for ((signal, vaf), fir) in fit.vaf.iter().zip(&found.impulse_responses) {
-        let there = fir.as_ref().map_or(0.0, |fir| fir.signal_to_noise / (1.0 + fir.signal_to_noise));
-        if *vaf < there - MISSED {
+        let (name, to_noise) = (signal.name(), fir.as_ref().map_or(0.0, |fir| fir.signal_to_noise));
+        let low = fir.is_some() && to_noise < LOW_SIGNAL_TO_NOISE;
+        if low {
             warnings.push(format!(
-                "the model explains {:.1} % of {}, the impulse response without a model {:.1} %: check the sign and unit of the \
-                 disturbance, --delay, --bicycle, --force-at and --feedback",
+                "the signal to noise of {name} is {to_noise:.2}, below {LOW_SIGNAL_TO_NOISE}: errors may be a multiple of the \
+                 standard errors; a longer record, stronger or more pushes, or a --feedback with fewer gains help"
+            ));
+        }
+        let there = to_noise / (1.0 + to_noise);
+        if *vaf < there - MISSED {
+            let noise = if low { "; with that noise it may be chance" } else { "" };
+            warnings.push(format!(
+                "the model explains {:.1} % of {name}, the impulse response without a model {:.1} %: check the sign and unit of the \
+                 disturbance, --delay, --bicycle, --force-at and --feedback{noise}",
                 100.0 * vaf,
-                signal.name(),
                 100.0 * there
             ));
         }
     }
-    if fit.rightmost_1_s > UNSTABLE_1_S {
+    if !fit.is_stable() {
         let doubling_s = std::f64::consts::LN_2 / fit.rightmost_1_s;
-        warnings.push(format!("the closed loop is unstable: its motion doubles every {doubling_s:.1} s"));
+        warnings.push(format!(
+            "the closed loop is unstable: its motion doubles every {doubling_s:.1} s. Its gains have no standard errors: growth is \
+             exponential in the gains, a covariance takes it as linear"
+        ));
     }
+    warnings.extend(rival(&found.steps[0].fit));
     warnings
+}
+
+/// Another optimum that the record does not tell from the best one: its log-likelihood is within a 95 % interval, one of its
+/// gains is not.
+fn rival(full: &Fit) -> Option<String> {
+    let (best, errors) = (&full.optima[0], full.standard_errors());
+    let far = |gains: &PerGain, gain: usize| (gains[gain] - best.gains[gain]).abs() / errors[gain];
+    let farthest = |optimum: &LocalOptimum| {
+        let gains = full.active.iter().copied();
+        gains.max_by(|a, b| far(&optimum.gains, *a).total_cmp(&far(&optimum.gains, *b)))
+    };
+    let others = full.optima[1..].iter().filter(|optimum| optimum.drop < DROP_95);
+    let (other, gain) = others
+        .filter_map(|optimum| Some((optimum, farthest(optimum)?)))
+        .find(|(optimum, gain)| !full.is_stable() || far(&optimum.gains, *gain) > NORMAL_95)?;
+    let [at, rather] = [other, best].map(|optimum| number(optimum.gains[gain]));
+    Some(format!(
+        "another optimum of the full fit explains nearly as much of the record: its log-likelihood is {:.2} lower, within the \
+         {DROP_95:.2} of a 95 % interval, and its {} is {at} in place of {rather} (\"optima\" has all)",
+        other.drop,
+        symbols()[gain]
+    ))
 }
 
 /// The gains of a fit that the record does not determine.

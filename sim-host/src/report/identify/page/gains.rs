@@ -48,6 +48,11 @@ pub(super) fn gains(document: &IdentifyDocument, found: &Identified) -> String {
         )),
         None => paragraph("The gains are those of the linear bicycle."),
     };
+    if matches!(found.refined, None | Some(Ok(_)))
+        && let Some(why) = found.errors_unknown()
+    {
+        text += &paragraph(&format!("Their errors are not known: {why}."));
+    }
     let by_signal: Vec<String> =
         document.vaf_by_signal.iter().map(|(signal, vaf)| format!("{signal} {} %", percent(*vaf))).collect();
     let real_1_s = document.rightmost_eigenvalue_1_s;
@@ -74,6 +79,9 @@ pub(super) fn not_identified(document: &IdentifyDocument) -> String {
     };
     let all: Vec<String> = loose.chain(symbols().iter().filter_map(reason)).collect();
     match all[..] {
+        [] if document.covariance.is_none() => {
+            paragraph("Which gains the record determines is not known: they have no standard errors.")
+        }
         [] => paragraph("Every gain is identified: no 95 % interval contains zero."),
         _ => list(all.iter().map(String::as_str)),
     }
