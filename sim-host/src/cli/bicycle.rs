@@ -8,6 +8,7 @@ use crate::bicycle::catalogue::{self, Bicycle};
 use crate::bicycle::linear::Linear;
 use crate::bicycle::uncertain::Measured;
 use crate::bicycle::{Geometry, KEYS, onboard};
+use crate::commands::CommandError;
 use crate::eigen::{Feedback, Model, Stability, stability};
 use crate::plant::ImuMount;
 use crate::report::document::CheckDocument;
@@ -78,7 +79,7 @@ fn list() -> Result<(), Failure> {
     let mut text = String::new();
     for name in catalogue::shipped_names() {
         let bicycle = catalogue::load(&name)?;
-        let Stability { critical: c, ranges, .. } = uncontrolled(&bicycle);
+        let Stability { critical: c, ranges, .. } = uncontrolled(&bicycle)?;
         let ranges: Vec<String> = ranges.iter().map(|(from, to)| format!("{from:.3} to {to:.3}")).collect();
         let ranges = if ranges.is_empty() { "nowhere".into() } else { ranges.join(", ") };
         let speed = |v: Option<f64>| v.map_or("  none".into(), |v| format!("{v:6.3}"));
@@ -95,8 +96,9 @@ fn list() -> Result<(), Failure> {
 }
 
 /// Stability of the uncontrolled bicycle.
-fn uncontrolled(bicycle: &Bicycle) -> Stability {
-    stability(&Model::new(&bicycle.parameters, Feedback::new(Law::None, Capsize::default()), None))
+fn uncontrolled(bicycle: &Bicycle) -> Result<Stability, Failure> {
+    let model = Model::new(&bicycle.parameters, Feedback::new(Law::None, Capsize::default()), None);
+    stability(&model).ok_or_else(|| format!("{}: {}", bicycle.name, CommandError::NoEigenvalue).into())
 }
 
 fn show(bicycle: &Bicycle, ini: bool) -> Result<(), Failure> {
@@ -125,7 +127,7 @@ fn show(bicycle: &Bicycle, ini: bool) -> Result<(), Failure> {
 fn check(bicycle: &Bicycle, json: Option<&PathBuf>) -> Result<(), Failure> {
     warn(bicycle);
     let linear = Linear::new(&bicycle.parameters);
-    let Stability { critical: c, ranges, changes } = uncontrolled(bicycle);
+    let Stability { critical: c, ranges, changes } = uncontrolled(bicycle)?;
     let flashed_off = onboard::fit(
         &mut Config::product(),
         &Geometry::new(&bicycle.parameters),

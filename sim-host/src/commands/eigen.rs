@@ -3,7 +3,7 @@
 use super::CommandError;
 use crate::bicycle::catalogue::Bicycle;
 use crate::eigen::{
-    CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes_until, roots, stability,
+    CriticalSpeeds, Feedback, LinearActuator, Mode, Model, Stability, modes_until, roots, stability_until,
 };
 use crate::range::within;
 use crate::report::document::EigenDocument;
@@ -57,7 +57,7 @@ pub struct Eigenvalues {
 /// returns true.
 ///
 /// # Errors
-/// A speed out of range; an actuator or a speed that does not suit law and rider.
+/// A speed out of range; an actuator or a speed that does not suit law and rider; eigenvalues that do not converge.
 pub fn eigen_until(
     task: &EigenTask,
     stop: &(dyn Fn() -> bool + Sync),
@@ -88,9 +88,14 @@ pub fn eigen_until(
     let feedback = Feedback::new(law.clone(), capsize);
     let model = Model::new(&bicycle.parameters, feedback, rider.as_ref().map(|one| one.rider.clone()));
     let model = model.with_actuator(*actuator)?;
-    let stability = stability(&model);
+    let Some(stability) = stability_until(&model, stop) else {
+        return if stop() { Ok(None) } else { Err(CommandError::NoEigenvalue) };
+    };
     let at = |&v: &f64| (!stop()).then(|| roots(&model.at(v), count));
     let Some(values) = speeds.par_iter().map(at).collect::<Option<Vec<_>>>() else { return Ok(None) };
+    if values.iter().any(Vec::is_empty) {
+        return Err(CommandError::NoEigenvalue);
+    }
     let Some(modes) = modes_until(&model, speeds, count, stop) else { return Ok(None) };
     let CriticalSpeeds { v_d, v_w, v_c } = stability.critical;
     let document = EigenDocument {

@@ -1,7 +1,7 @@
 //! Errors of commands.
 
 use crate::basin::SearchError;
-use crate::eigen::ActuatorError;
+use crate::eigen::{ActuatorError, SEARCH_TO_M_S};
 use crate::range::RangeError;
 use crate::scenario::{ScenarioError, bounds, number, search_key};
 use crate::sweep::SweepError;
@@ -20,6 +20,11 @@ pub enum CommandError {
     /// The actuator of an eigenvalue analysis can't be used.
     #[error(transparent)]
     Actuator(#[from] ActuatorError),
+    /// The bicycle with what steers it is too far from any real one.
+    #[error(
+        "no eigenvalue converges at a speed up to {SEARCH_TO_M_S} m/s or a requested one: bicycle, law, rider or actuator are too extreme"
+    )]
+    NoEigenvalue,
     /// A choice beside the scenario is wrong.
     #[error("{name}: {reason}")]
     Choice {
@@ -77,7 +82,7 @@ impl CommandError {
             }
             Self::Idle { name, .. } => Some((*name).into()),
             Self::Sweep(error) => error.key().map(Into::into),
-            Self::Cells { .. } => None,
+            Self::Cells { .. } | Self::NoEigenvalue => None,
             Self::Cell { key, .. } => key.clone(),
             Self::OneSided => Some("plant".into()),
         }

@@ -26,11 +26,11 @@ pub const RIDERLESS: &str = "balanceassistv1";
 /// The same bicycle with a rigid rider.
 pub const RIDDEN: &str = "balanceassistv1_jason";
 
-/// The lowest speed at which the straight ride is stable \[m/s\] (`None` if it is nowhere stable up to 20 m/s), and the
-/// speed from which it is unstable again.
+/// The lowest speed at which the straight ride is stable \[m/s\], and the speed from which it is unstable again. `None` if
+/// it is nowhere stable up to 20 m/s, or no root converges.
 pub fn stable_range(bicycle: &Parameters, law: Law) -> (Option<f64>, f64) {
     let found = stability(&Model::new(bicycle, Feedback::Law(law), None));
-    let (from, to) = found.ranges.first().copied().unzip();
+    let (from, to) = found.and_then(|found| found.ranges.first().copied()).unzip();
     (from, to.unwrap_or(SEARCH_TO_M_S))
 }
 

@@ -85,7 +85,7 @@ pub(super) fn table_j_4(study: &Study) -> Item {
     let all = Fit::THESIS.map(|fit| stability(&model(study, fit)));
     let values = Item::compare("table-J.4", |cell| {
         let found = fit_named(&cell.column).and_then(|fit| Fit::THESIS.iter().position(|f| *f == fit));
-        let Some(of) = found.map(|i| &all[i]) else { return Value::new(cell, None) };
+        let Some(of) = found.and_then(|i| all[i].as_ref()) else { return Value::new(cell, None) };
         let weave = cell.row == "v_w";
         let end = longest(of).map(|range| if weave { range.0 } else { range.1 });
         let zero = if weave { of.critical.v_w } else { of.critical.v_c };
@@ -113,7 +113,7 @@ pub(super) fn figure_j_3(study: &Study) -> Item {
             x: Axis::new(SPEED).over(0.0, 12.0),
             y: Axis::new("Eigenvalue λ").over(-10.0, 10.0),
             series: [real, imaginary].concat(),
-            shaded: longest(&stability(&model)).into_iter().collect(),
+            shaded: stability(&model).iter().filter_map(longest).collect(),
             ..Plot::default()
         }
     };

@@ -6,7 +6,7 @@ use super::item::{Figure, Item, Value};
 use super::study::Study;
 use crate::bicycle::catalogue;
 use crate::bicycle::linear::Linear;
-use crate::eigen::{Feedback, Intuitive, Model, critical_speeds};
+use crate::eigen::{Feedback, Intuitive, Model, critical_speeds, spectrum};
 use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
 use crate::ride::{Conditions, Start, TracePoint, traced};
 use control::Law;
@@ -161,7 +161,7 @@ pub(super) fn figure_2_7(study: &Study) -> Item {
 
 /// Eigenvalues under eq. 2.16, `(real, imaginary)`.
 fn controlled(model: &Model, v: f64) -> Vec<(f64, f64)> {
-    model.at(v).a.complex_eigenvalues().iter().map(|e| (e.re, e.im)).collect()
+    spectrum(&model.at(v).a).iter().flatten().map(|e| (e.re, e.im)).collect()
 }
 
 fn growth(values: &[(f64, f64)]) -> f64 {

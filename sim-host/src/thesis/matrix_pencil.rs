@@ -1,5 +1,6 @@
 //! Eigenvalues from a response: the matrix pencil (Hua and Sarkar 1990) of several signals with the same modes.
 
+use crate::eigen::spectrum;
 use nalgebra::{Complex, ComplexField, DMatrix};
 
 /// The `order` eigenvalues \[1/s\] of equally long `signals`, sampled every `dt` seconds; largest real part first.
@@ -35,7 +36,7 @@ pub fn eigenvalues(signals: &[Vec<f64>], dt: f64, order: usize) -> Option<Vec<Co
         }
         pencil.column_mut(column).scale_mut(1.0 / size);
     }
-    let mut found: Vec<_> = pencil.complex_eigenvalues().iter().map(|z| ComplexField::ln(*z) / dt).collect();
+    let mut found: Vec<_> = spectrum(&pencil)?.into_iter().map(|z| ComplexField::ln(z) / dt).collect();
     found.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
     found.iter().all(|e| e.re.is_finite() && e.im.is_finite()).then_some(found)
 }

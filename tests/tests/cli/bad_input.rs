@@ -241,6 +241,19 @@ fn numbers_out_of_range() {
     }
 }
 
+/// Situation: a rider with muscles too quick for a delay of a second: no number of points resolves the roots.
+/// Action: request eigenvalues.
+/// Must hold: rejected with the reason.
+#[test]
+fn eigenvalues_that_do_not_converge() {
+    let bench = Bench::new(PROGRAM);
+    let text = "schema = 1\ndelay_ms = 1000\nneuromuscular = { omega_rad_s = 200, zeta = 0.707 }\n\
+        columns = [\"speed_m_s\", \"K_phi_p\", \"K_phi_dd\", \"K_delta_dd\", \"K_y\"]\n\
+        rows = [[4.0, 1000.0, 1000.0, 1000.0, 1000.0]]\n";
+    bench.write("rider.toml", text);
+    bench.run("eigen --rider rider.toml --speeds 4").rejected_naming(&["no eigenvalue converges", "20 m/s"]);
+}
+
 /// Situation: speed zero, and the largest disturbances allowed.
 /// Action: ride and search.
 /// Must hold: results, not errors; nothing in them is NaN.

@@ -15,6 +15,12 @@ const MANY: &str = "basin --speeds 0:30:0.0005 --time-limit 0.2 --scan-step 10 -
 /// One column that takes minutes.
 const LONG: &str = "basin --speeds 6 --time-limit 3600 --max-rate 0.5 --scan-step 0.01";
 
+/// A delayed rider with muscles so quick that its roots at all speeds of the search for stable ones take many seconds.
+const QUICK_RIDER: &str = "schema = 1\ndelay_ms = 1000\nneuromuscular = { omega_rad_s = 100, zeta = 0.707 }\n\
+    columns = [\"speed_m_s\", \"run\", \"group\", \"vaf\", \"K_phi_p\", \"K_phi_d\", \"K_phi_dd\", \"K_delta_p\", \"K_delta_d\", \
+    \"K_delta_dd\", \"K_phi_i\", \"K_delta_i\", \"K_psi\", \"K_y\"]\n\
+    rows = [[4.0, 1, 1, 90.0, 1e3, 1e3, 1e3, 1e3, 1e3, 1e3, 1e3, 1e3, 1e3, 1e3]]\n";
+
 /// Waits until the child has computed for a while.
 fn wait_for_work(child: &mut Child) {
     until_used(child, 0.3);
@@ -178,6 +184,25 @@ fn commands_that_keep_nothing_end_at_the_first_signal() {
         let run = Run::from(child.wait_with_output().unwrap());
         assert_eq!((run.code, bench.files()), (Some(130), vec![]), "{line}, {signal}: {run:?}");
     }
+}
+
+/// Situation: eigenvalues of a delayed rider; the search for stable speeds, which comes first, takes many seconds.
+/// Action: SIGTERM.
+/// Must hold: exit code 130 soon, nothing written.
+#[test]
+fn eigenvalues_end_soon() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("rider.toml", QUICK_RIDER);
+    let mut command = bench.command("eigen --rider rider.toml --speeds 4 --json out.json");
+    command.env("RAYON_NUM_THREADS", "1").stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("the program starts");
+    wait_for_work(&mut child);
+    let start = Instant::now();
+    send("TERM", &child);
+    let run = Run::from(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "{run:?}");
+    assert!(start.elapsed() < Duration::from_secs(3), "{:?}", start.elapsed());
+    assert_eq!(bench.files(), ["rider.toml"]);
 }
 
 /// Situation: a column that takes minutes, results going to a new and to an older file.

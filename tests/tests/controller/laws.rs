@@ -131,7 +131,7 @@ fn the_capsize_term_steers_into_the_lean() {
                 "{name} {v}: {with} {without} {against}"
             );
         }
-        let found = stability(&model(capsize));
+        let found = stability(&model(capsize)).expect("roots");
         assert_eq!(found.critical.v_c, None, "{name}: {:?}", found.changes);
         bicycles += 1;
     }

@@ -3,9 +3,10 @@
 
 use control::Law;
 use nalgebra::{Complex, DMatrix, DVector, RowDVector};
+use sim_host::bicycle::Parameters;
 use sim_host::eigen::{
-    Crossing, DelaySystem, Feedback, Intuitive, Mode, Model, NEUTRAL_1_S, critical_speeds, modes, rightmost,
-    roots, stability,
+    Crossing, DelaySystem, Feedback, Intuitive, LinearActuator, Mode, Model, NEUTRAL_1_S, critical_speeds,
+    modes, rightmost, roots, stability,
 };
 use sim_host::rider::{Fit, Gains, KEYS, Neuromuscular, Outside, Rider, Row, Schedule, catalogue};
 use std::f64::consts::{PI, TAU};
@@ -252,7 +253,8 @@ fn undelayed_riders_are_stable_between_the_independent_speeds() {
     let published = entry("undelayed_stable_ranges");
     for fit in Fit::THESIS {
         let rider = undelayed(fit);
-        let found = stability(&with_rider(published.text("bicycle"), Law::None, rider.clone()));
+        let found =
+            stability(&with_rider(published.text("bicycle"), Law::None, rider.clone())).expect("roots");
         let printed: [f64; 2] = published.row(&format!("printed_{}", fit.name()));
         println!("{}: stable {:?}, printed {printed:?}", fit.name(), found.ranges);
         let Some(&(from, to)) = found.ranges.iter().find(|(from, to)| (*from..*to).contains(&5.0)) else {
@@ -282,7 +284,7 @@ fn without_a_rider_the_stable_range_is_from_weave_to_capsize_speed() {
     for bicycle in all_shipped() {
         for law in [Law::None, Law::H { cut: false }, Law::Cl1] {
             let model = Model::new(&bicycle.parameters, Feedback::Law(law.clone()), None);
-            let found = stability(&model);
+            let found = stability(&model).expect("roots");
             let critical = critical_speeds(model.linear(), &law);
             assert_eq!(found.critical, critical, "{}", bicycle.name);
             if let ([(from, to)], Some(v_w), Some(v_c)) = (&found.ranges[..], critical.v_w, critical.v_c) {
@@ -306,10 +308,39 @@ fn the_intuitive_controller_stabilises_weave_and_capsize() {
     let feedback = Feedback::Intuitive(controller);
     assert!((0..100).all(|i| feedback.at(0.1 * f64::from(i)).roll_rate < 40.0));
     let model = Model::new(&p, feedback, None);
-    let (found, alone) = (stability(&model), critical_speeds(model.linear(), &Law::None));
+    let (found, alone) = (stability(&model).expect("roots"), critical_speeds(model.linear(), &Law::None));
     println!("{:?} instead of {alone:?}", found.ranges);
     let [(from, to)] = found.ranges[..] else { panic!("{found:?}") };
     assert!(from > 0.3 && from < 0.5 * alone.v_w.unwrap() && to == 20.0 && found.critical.v_c.is_none());
+}
+
+/// Situation: bicycles under laws, with balanced state matrices at which the QR iteration without exceptional shifts
+/// stagnates, at a speed or at a part of the feedback.
+/// Action: compute stability, modes and the roots at every speed.
+/// Must hold: all are computed; four roots at every speed, each an eigenvalue.
+#[test]
+fn roots_are_found_where_the_qr_iteration_stagnates() {
+    let with = |name: &str, law: Law, inertia_kg_m2: f64, change: &dyn Fn(&mut Parameters)| {
+        let mut parameters = shipped(name).parameters;
+        change(&mut parameters);
+        let actuator = LinearActuator { inertia_kg_m2, ..LinearActuator::default() };
+        Model::new(&parameters, Feedback::Law(law), None).with_actuator(actuator).expect("in range")
+    };
+    let speeds: Vec<f64> = (0..=1000).map(|i| 0.02 * f64::from(i)).collect();
+    for model in [
+        with("rigid_jason", Law::H { cut: false }, 0.0, &|p| p.w = 0.5322),
+        with("pista_rider", Law::Cl2 { k: 1.0 }, 0.618, &|_| {}),
+        with("yellow_rider", Law::Cl1, 0.618, &|p| p.lam = 0.5824),
+    ] {
+        assert!(stability(&model).is_some());
+        assert_eq!(modes(&model, &speeds[..=500], 4).len(), 3);
+        for v in &speeds {
+            let system = model.at(*v);
+            let found = roots(&system, 4);
+            assert_eq!(found.len(), 4, "{v} m/s");
+            assert!(found.iter().all(|root| residual(&system, *root) < 1e-6), "{v} m/s: {found:?}");
+        }
+    }
 }
 
 fn mode<'a>(modes: &'a [Mode], name: &str) -> &'a Mode {

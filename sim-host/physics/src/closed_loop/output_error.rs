@@ -9,6 +9,7 @@
 //! wrong by half.
 
 use super::regress::{explained, long_run};
+use crate::eigen::spectrum;
 use crate::weave::Estimate;
 use crate::weave::student::quantile;
 use nalgebra::{Complex, ComplexField, DMatrix, DVector};
@@ -227,7 +228,7 @@ fn scaled_solution(x: &DMatrix<f64>, y: &DVector<f64>, damping: f64) -> Option<D
     solution.iter().all(|value| value.is_finite()).then_some(solution)
 }
 
-/// The recursion with its poles moved inside the circle of [`FASTEST_POLE`].
+/// The recursion with its poles moved inside the circle of [`FASTEST_POLE`]; itself if it is not finite.
 fn stable(a: &[f64]) -> Vec<f64> {
     let n = a.len();
     let companion = DMatrix::from_fn(n, n, |i, j| match i {
@@ -236,9 +237,10 @@ fn stable(a: &[f64]) -> Vec<f64> {
     });
     let mut polynomial = vec![Complex::new(1.0, 0.0)];
     if n > 0 {
-        for pole in companion.complex_eigenvalues().iter() {
+        let Some(poles) = spectrum(&companion) else { return a.to_vec() };
+        for pole in poles {
             let size = libm::hypot(pole.re, pole.im);
-            let pole = if size > FASTEST_POLE { pole * (FASTEST_POLE / size) } else { *pole };
+            let pole = if size > FASTEST_POLE { pole * (FASTEST_POLE / size) } else { pole };
             polynomial.push(Complex::new(0.0, 0.0));
             for i in (1..polynomial.len()).rev() {
                 let before = polynomial[i - 1];

@@ -46,13 +46,13 @@ impl Followed {
     }
 
     /// Continues to the parameter `to` in steps of at most `step`, shorter where the assignment of roots is
-    /// ambiguous.
-    pub(super) fn go(&mut self, to: f64, step: f64, find: &impl Fn(f64) -> Found) {
+    /// ambiguous. `None` once `find` gives none.
+    pub(super) fn go(&mut self, to: f64, step: f64, find: &impl Fn(f64) -> Option<Found>) -> Option<()> {
         self.step = self.step.min(step);
         while self.at != to {
             let rest = to - self.at;
             let next = if rest.abs() <= self.step { to } else { self.at + self.step.copysign(rest) };
-            let found = find(next);
+            let found = find(next)?;
             let edge = if found.all { None } else { found.roots.last() };
             let edge = edge.map_or(f64::NEG_INFINITY, |last| last.re - BEYOND * last.modulus());
             let ahead = |(root, slope): (&Option<C>, &C)| {
@@ -73,6 +73,7 @@ impl Followed {
             (self.at, self.now) = (next, matched);
             self.step = (2.0 * self.step).min(step);
         }
+        Some(())
     }
 }
 
@@ -156,7 +157,7 @@ mod tests {
 
     fn follow(to: f64, start: &[C], find: impl Fn(f64) -> Vec<C>) -> Vec<C> {
         let mut followed = Followed::new(0.0, start);
-        followed.go(to, 0.1, &|p| Found { roots: find(p), all: true });
+        followed.go(to, 0.1, &|p| Some(Found { roots: find(p), all: true })).unwrap();
         followed.now().iter().map(|r| r.unwrap()).collect()
     }
 
@@ -179,12 +180,20 @@ mod tests {
 
     #[test]
     fn a_root_beyond_the_edge_is_lost() {
-        let find = |p: f64| Found {
-            roots: [0.0, -1.0 - p].into_iter().filter(|re| *re > -1.45).map(|re| C::new(re, 0.0)).collect(),
-            all: false,
+        let find = |p: f64| {
+            let found = [0.0, -1.0 - p].into_iter().filter(|re| *re > -1.45);
+            Some(Found { roots: found.map(|re| C::new(re, 0.0)).collect(), all: false })
         };
         let mut followed = Followed::new(0.0, &[C::new(0.0, 0.0), C::new(-1.0, 0.0)]);
-        followed.go(1.0, 0.1, &find);
+        followed.go(1.0, 0.1, &find).unwrap();
         assert_eq!(followed.now(), [Some(C::new(0.0, 0.0)), None]);
+    }
+
+    #[test]
+    fn following_ends_where_no_roots_are_given() {
+        let find = |p: f64| (p < 0.35).then(|| Found { roots: vec![C::new(p, 0.0)], all: true });
+        let mut followed = Followed::new(0.0, &[C::ZERO]);
+        assert_eq!(followed.go(0.3, 0.1, &find), Some(()));
+        assert_eq!(followed.go(1.0, 0.1, &find), None);
     }
 }

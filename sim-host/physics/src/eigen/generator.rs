@@ -1,8 +1,9 @@
 //! Discretised infinitesimal generator of a delay system: a matrix whose rightmost eigenvalues approximate
 //! the system's characteristic roots (Breda, Maset, Vermiglio 2005, SIAM J. Sci. Comput. 27, 482-495).
 
+use super::qr::spectrum;
 use super::system::DelaySystem;
-use nalgebra::linalg::{Schur, balancing::balance_parlett_reinsch};
+use nalgebra::linalg::balancing::balance_parlett_reinsch;
 use nalgebra::{Complex, DMatrix};
 
 /// The generator, with the history of the signal at `nodes` Chebyshev points.
@@ -43,12 +44,10 @@ fn differentiation(n: usize) -> DMatrix<f64> {
     d
 }
 
-/// All eigenvalues of a matrix; `None` if the QR iteration does not converge.
+/// All eigenvalues of a matrix, balanced before; `None` if it has entries that are not finite.
 pub(super) fn eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     balance_parlett_reinsch(&mut matrix);
-    let iterations = 100 * matrix.nrows();
-    let schur = Schur::try_new(matrix, f64::EPSILON, iterations)?;
-    Some(schur.complex_eigenvalues().iter().copied().collect())
+    spectrum(&matrix)
 }
 
 #[cfg(test)]

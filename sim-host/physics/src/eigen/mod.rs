@@ -7,6 +7,7 @@ mod feedback;
 mod follow;
 mod generator;
 mod modes;
+mod qr;
 mod roots;
 mod stability;
 mod system;
@@ -15,8 +16,9 @@ pub use actuator::{ActuatorError, LinearActuator};
 pub use critical::{CriticalSpeeds, SEARCH_TO_M_S, critical_speeds};
 pub use feedback::{Feedback, Intuitive, StaticFeedback};
 pub use modes::{Mode, REFERENCE_SPEED_M_S, modes, modes_until};
+pub use qr::spectrum;
 pub use roots::{rightmost, roots};
-pub use stability::{Crossing, Stability, StabilityChange, stability};
+pub use stability::{Crossing, Stability, StabilityChange, stability, stability_until};
 pub use system::{DelaySystem, Model};
 
 use crate::bicycle::linear::Linear;
@@ -25,9 +27,10 @@ use nalgebra::Complex;
 use rayon::prelude::*;
 
 /// The four eigenvalues \[1/s\] at speed `v` \[m/s\] without a rider: largest real part first; of a conjugate
-/// pair, the positive imaginary part first.
+/// pair, the positive imaginary part first. NaN if the state matrix is not finite.
 pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
-    let mut values: [Complex<f64>; 4] = bicycle.state_matrix(v, law.gain(v)).complex_eigenvalues().into();
+    let found = spectrum(&bicycle.state_matrix(v, law.gain(v))).and_then(|values| values.try_into().ok());
+    let mut values = found.unwrap_or([Complex::new(f64::NAN, f64::NAN); 4]);
     sort(&mut values);
     values
 }
@@ -37,9 +40,12 @@ pub fn eigenvalues(bicycle: &Linear, law: &Law, v: f64) -> [Complex<f64>; 4] {
 pub const NEUTRAL_1_S: f64 = 1e-3;
 
 /// Per speed \[m/s\], the number of models whose straight ride is unstable: the rightmost root grows by more than
-/// [`NEUTRAL_1_S`].
+/// [`NEUTRAL_1_S`], or no root converges.
 pub fn unstable(models: &[Model], speeds: &[f64]) -> Vec<usize> {
-    let grows = |model: &Model, v: f64| rightmost(&model.at(v)).re > NEUTRAL_1_S;
+    let grows = |model: &Model, v: f64| {
+        let growth = rightmost(&model.at(v)).re;
+        growth.is_nan() || growth > NEUTRAL_1_S
+    };
     speeds.par_iter().map(|&v| models.iter().filter(|model| grows(model, v)).count()).collect()
 }
 

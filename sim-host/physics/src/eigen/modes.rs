@@ -1,9 +1,10 @@
 //! Modes of a model over speed, followed by continuity.
 
 use super::follow::{Followed, Found};
+use super::qr::spectrum;
 use super::roots::{roots, same};
 use super::sort;
-use super::system::Model;
+use super::system::{DelaySystem, Model};
 use nalgebra::Complex;
 
 /// Speed at which modes are named \[m/s\]; a bicycle's modes are well separated there.
@@ -37,19 +38,15 @@ pub fn modes(model: &Model, speeds: &[f64], count: usize) -> Vec<Mode> {
     modes_until(model, speeds, count, &|| false).unwrap_or_default()
 }
 
-/// As [`modes`]; `stop` is called at every speed, and there are no modes once it returns true.
+/// As [`modes`]; `stop` is called at every step over speed and strength, and there are no modes once it returns true.
 pub fn modes_until(
     model: &Model,
     speeds: &[f64],
     count: usize,
     stop: &dyn Fn() -> bool,
 ) -> Option<Vec<Mode>> {
-    let (names, start) = named(model, count);
-    let find = |v: f64| {
-        let system = model.at(v);
-        let all = system.is_ordinary();
-        Found { roots: roots(&system, start.len() + SPARE), all }
-    };
+    let (names, start) = named(model, count, stop)?;
+    let find = |v: f64| (!stop()).then(|| found(&model.at(v), start.len()));
     let mut curves: Vec<Vec<Option<Complex<f64>>>> = vec![vec![None; speeds.len()]; start.len()];
     let mut order: Vec<usize> = (0..speeds.len()).collect();
     order.sort_by(|&i, &j| speeds[i].total_cmp(&speeds[j]));
@@ -58,10 +55,7 @@ pub fn modes_until(
     for direction in [below.into_iter().rev().collect(), above] {
         let mut followed = Followed::new(REFERENCE_SPEED_M_S, &start);
         for i in direction {
-            if stop() {
-                return None;
-            }
-            followed.go(speeds[i], SPEED_STEP, &find);
+            followed.go(speeds[i], SPEED_STEP, &find)?;
             for (curve, root) in curves.iter_mut().zip(followed.now()) {
                 curve[i] = *root;
             }
@@ -77,37 +71,40 @@ pub fn modes_until(
     Some(modes)
 }
 
-/// Names and roots at the reference speed.
-fn named(model: &Model, count: usize) -> (Vec<String>, Vec<Complex<f64>>) {
+/// The rightmost roots of a system of which `count` are followed.
+fn found(system: &DelaySystem, count: usize) -> Found {
+    Found { roots: roots(system, count + SPARE), all: system.is_ordinary() }
+}
+
+/// Names and roots at the reference speed; `None` once `stop` returns true.
+fn named(model: &Model, count: usize, stop: &dyn Fn() -> bool) -> Option<(Vec<String>, Vec<Complex<f64>>)> {
     let v = REFERENCE_SPEED_M_S;
     let find = |strength: f64| {
         let system = model.scaled(v, strength);
-        let all = system.is_ordinary();
-        Found { roots: roots(&system, system.a.nrows() + SPARE), all }
+        (!stop()).then(|| found(&system, system.a.nrows()))
     };
-    let mut bicycle: Vec<Complex<f64>> =
-        model.linear().state_matrix(v, 0.0).complex_eigenvalues().iter().copied().collect();
+    let mut bicycle = spectrum(&model.linear().state_matrix(v, 0.0)).unwrap_or_default();
     // Real roots last, the most negative at the end.
     sort(&mut bicycle);
     bicycle.sort_by_key(|root| root.im == 0.0);
     let mut followed = Followed::new(0.0, &bicycle);
-    followed.go(1.0, STRENGTH_STEP, &find);
+    followed.go(1.0, STRENGTH_STEP, &find)?;
     let named = ["weave", "weave", "capsize", "caster"].into_iter().zip(followed.now());
-    let mut found: Vec<(String, Complex<f64>)> =
+    let mut modes: Vec<(String, Complex<f64>)> =
         named.filter_map(|(name, root)| Some((name.to_owned(), (*root)?))).collect();
     let mut number = 0;
     for root in roots(&model.at(v), count) {
-        if found.iter().any(|(_, known)| same(*known, root)) {
+        if modes.iter().any(|(_, known)| same(*known, root)) {
             continue;
         }
-        let name = match found.iter().find(|(_, known)| same(*known, root.conj())) {
+        let name = match modes.iter().find(|(_, known)| same(*known, root.conj())) {
             Some((name, _)) => name.clone(),
             None => {
                 number += 1;
                 format!("{} {number}", model.adds())
             }
         };
-        found.push((name, root));
+        modes.push((name, root));
     }
-    found.into_iter().unzip()
+    Some(modes.into_iter().unzip())
 }

@@ -48,14 +48,20 @@ pub struct Stability {
 ///
 /// With a law and no rider the critical speeds are those of [`critical_speeds`]. Otherwise `v_w` and `v_c`
 /// are the first speeds at which the rightmost pair becomes stable and at which a real root becomes positive;
-/// `v_d` is not computed.
-pub fn stability(model: &Model) -> Stability {
+/// `v_d` is not computed. `None` if there is a speed at which no root converges.
+pub fn stability(model: &Model) -> Option<Stability> {
+    stability_until(model, &|| false)
+}
+
+/// As [`stability`]; `stop` is called at every speed, and there is none once it returns true.
+pub fn stability_until(model: &Model, stop: &(dyn Fn() -> bool + Sync)) -> Option<Stability> {
     let steps = (SEARCH_TO_M_S / STEP_M_S).round() as usize;
+    let look = |v: f64| if stop() { None } else { Look::at(model, v) };
     let looks: Vec<Look> =
-        (0..=steps).into_par_iter().map(|i| Look::at(model, i as f64 * STEP_M_S)).collect();
+        (0..=steps).into_par_iter().map(|i| look(i as f64 * STEP_M_S)).collect::<Option<_>>()?;
     let (grows, pair_grows) = (definite(&looks, |look| look.grows), definite(&looks, |look| look.pair_grows));
     let between = |w: &[Look], below: &dyn Fn(&Look) -> bool| {
-        bisect((w[0].speed, w[1].speed), |v| below(&Look::at(model, v)))
+        bisect((w[0].speed, w[1].speed), |v| look(v).is_some_and(|look| below(&look)))
     };
     let changes: Vec<StabilityChange> = looks
         .windows(2)
@@ -84,7 +90,7 @@ pub fn stability(model: &Model) -> Stability {
                 .map(|w| between(w, &|look| look.turn > 0.0)),
         },
     };
-    Stability { critical, ranges: ranges(!grows[0], &changes), changes }
+    (!stop()).then(|| Stability { critical, ranges: ranges(!grows[0], &changes), changes })
 }
 
 /// Replaces undecided signs (zero within rounding) by that of the speed below; at the first speed by that
@@ -120,12 +126,20 @@ struct Look {
 }
 
 impl Look {
-    fn at(model: &Model, speed: f64) -> Self {
+    /// `None` if no root converges.
+    fn at(model: &Model, speed: f64) -> Option<Self> {
         let system = model.at(speed);
         let roots = roots(&system, ROOTS);
         let turn = (-system.undelayed()).determinant();
-        let (growth, pair) = (roots[0].re, rightmost_pair(&roots));
-        Self { speed, growth, grows: grows(growth, &roots), pair, pair_grows: grows(pair, &roots), turn }
+        let (growth, pair) = (roots.first()?.re, rightmost_pair(&roots));
+        Some(Self {
+            speed,
+            growth,
+            grows: grows(growth, &roots),
+            pair,
+            pair_grows: grows(pair, &roots),
+            turn,
+        })
     }
 }
 
