@@ -4,7 +4,7 @@ use super::outputs::{complain, print};
 use super::{Ended, Failure, interrupt};
 use crate::counted::counted;
 use crate::thesis::catalogue::{CATALOGUE, Entry, Made, selected};
-use crate::thesis::document::ThesisDocument;
+use crate::thesis::document::{Compared, ThesisDocument};
 use crate::thesis::run::{Progress, run as compute, work};
 use crate::thesis::study::Study;
 use crate::thesis::write::{PAGE, prepare, write};
@@ -104,16 +104,13 @@ fn list(entries: &[&Entry]) -> String {
 /// The result as text.
 fn summary(document: &ThesisDocument) -> String {
     let items = |status: &str| document.items.iter().filter(|i| i.status == status).count();
-    let printed = || document.values.iter().filter(|v| v.published.is_some());
-    let starts = |word: &str| printed().filter(|v| v.explanation.starts_with(word)).count();
-    let close = printed().filter(|v| v.difference_percent.is_some() && v.explanation.is_empty()).count();
+    let Compared { printed, close, explained, unexplained, missing } = Compared::of(&document.values);
     format!(
-        "{} in {:.1} s, {} not computable; {}: {close} within 2 %, the rounding or the bound of the print, {} explained, {} unexplained\n",
+        "{} in {:.1} s, {} not computable; {}: {close} within 2 %, the rounding or the bound of the print, {explained} explained, \
+         {unexplained} unexplained, {missing} without a computed counterpart\n",
         counted(items("computed"), "item", "items"),
         document.seconds,
         items("unavailable"),
-        counted(printed().count(), "printed number", "printed numbers"),
-        starts("explained"),
-        starts("unexplained"),
+        counted(printed, "printed number", "printed numbers"),
     )
 }

@@ -98,6 +98,17 @@ impl Explanation {
 }
 
 impl ValueEntry {
+    /// "close", "explained" or "unexplained" by the comparison with the print; "" if no number is printed or none
+    /// computed.
+    pub fn kind(&self) -> &'static str {
+        match self.published.and(self.exact) {
+            None => "",
+            Some(_) if self.explanation.starts_with("unexplained") => "unexplained",
+            Some(_) if self.explanation.starts_with("explained") => "explained",
+            Some(_) => "close",
+        }
+    }
+
     fn new(item: &'static str, value: &Value) -> Self {
         let cell = &value.cell;
         let finite = |x: Option<f64>| x.filter(|x| x.is_finite());
@@ -118,6 +129,38 @@ impl ValueEntry {
                 .collect(),
             capped: value.capped,
         }
+    }
+}
+
+/// Printed numbers, by how the computed ones compare.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Compared {
+    /// All printed numbers, the sum of the others.
+    pub printed: usize,
+    /// Met within 2 %, the rounding of the print or the printed bound.
+    pub close: usize,
+    /// Different, and explained by another reading of the thesis.
+    pub explained: usize,
+    /// Different otherwise.
+    pub unexplained: usize,
+    /// Without a computed counterpart.
+    pub missing: usize,
+}
+
+impl Compared {
+    /// Counts the printed ones of `values`.
+    pub fn of(values: &[ValueEntry]) -> Self {
+        let mut counts = Self::default();
+        for value in values.iter().filter(|v| v.published.is_some()) {
+            counts.printed += 1;
+            *match value.kind() {
+                "close" => &mut counts.close,
+                "explained" => &mut counts.explained,
+                "unexplained" => &mut counts.unexplained,
+                _ => &mut counts.missing,
+            } += 1;
+        }
+        counts
     }
 }
 
@@ -197,5 +240,32 @@ impl<'a> CsvRow<'a> {
             experiments: experiments.collect::<Vec<_>>().join("; "),
             capped: value.capped,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::thesis::published::{Cell, Printed};
+
+    fn entry(printed: Option<&str>, exact: Option<f64>) -> ValueEntry {
+        let printed = printed.map(|text| Printed::parse(text).unwrap());
+        let text = String::new;
+        let cell = Cell { row: text(), column: text(), unit: text(), from: text(), printed, bound: None };
+        ValueEntry::new("item", &Value::new(cell, exact))
+    }
+
+    #[test]
+    fn the_parts_are_all_printed_numbers() {
+        let values = [
+            entry(Some("5.0"), Some(5.05)),
+            // No difference in percent of zero.
+            entry(Some("0.0"), Some(0.04)),
+            entry(Some("5.0"), Some(7.0)),
+            entry(Some("5.0"), None),
+            entry(None, Some(5.0)),
+        ];
+        let counts = Compared { printed: 4, close: 2, explained: 0, unexplained: 1, missing: 1 };
+        assert_eq!(Compared::of(&values), counts);
     }
 }

@@ -1,7 +1,7 @@
 //! The report as a single, self-contained HTML page.
 
 use super::catalogue::Made;
-use super::document::{ThesisDocument, ValueEntry};
+use super::document::{Compared, ThesisDocument, ValueEntry};
 use super::item::{ACCEPTED_PERCENT, Table};
 use super::published::remarks;
 use super::run::Outcome;
@@ -26,12 +26,7 @@ pub(super) fn page(document: &ThesisDocument, outcomes: &[Outcome]) -> String {
 }
 
 fn summary(document: &ThesisDocument) -> String {
-    let compared: Vec<&ValueEntry> = document.values.iter().filter(|v| v.published.is_some()).collect();
-    let count = |f: &dyn Fn(&ValueEntry) -> bool| compared.iter().filter(|v| f(v)).count();
-    let (close, explained) =
-        (count(&|v| kind(v) == "close"), count(&|v| v.explanation.starts_with("explained")));
-    let unexplained = count(&|v| v.explanation.starts_with("unexplained"));
-    let missing = count(&|v| v.exact.is_none());
+    let Compared { printed, close, explained, unexplained, missing } = Compared::of(&document.values);
     let r = &document.resolution;
     let tool = &document.tool;
     let cut = if document.complete {
@@ -42,7 +37,7 @@ fn summary(document: &ThesisDocument) -> String {
     format!(
         "<p>Every table and computed figure of Kuipers, <cite>The Stability of a Bicycle-Rider System</cite>, Delft \
          2020, by {} {} (commit {}), in {:.0} s.</p>\n{cut}\
-         <p>Of {} printed numbers <b>{close}</b> are met within {ACCEPTED_PERCENT} %, the rounding of the print or the printed bound, <b>{explained}</b> differ and are \
+         <p>Of {printed} printed numbers <b>{close}</b> are met within {ACCEPTED_PERCENT} %, the rounding of the print or the printed bound, <b>{explained}</b> differ and are \
          explained by another reading of the text that was computed too, <b>{unexplained}</b> differ unexplained, \
          {missing} have no computed counterpart.</p>\n\
          <p>“Exact” is the value of the model: rides of 6 s, a fall at 90 degrees of roll or steer, gains set by the \
@@ -53,7 +48,6 @@ fn summary(document: &ThesisDocument) -> String {
         tool.version,
         tool.commit,
         document.seconds,
-        compared.len(),
         r.tolerance,
         r.rider_speed_step,
         if document.quick { " (a quick look, coarser than the full report)" } else { "" },
@@ -100,16 +94,6 @@ fn section(document: &ThesisDocument, outcome: &Outcome) -> String {
     text + "</section>\n"
 }
 
-/// The CSS class of a value's row.
-fn kind(value: &ValueEntry) -> &'static str {
-    match value.difference_percent {
-        _ if value.explanation.starts_with("unexplained") => "unexplained",
-        _ if value.explanation.starts_with("explained") => "explained",
-        Some(_) => "close",
-        None => "",
-    }
-}
-
 fn number(x: Option<f64>) -> String {
     let Some(x) = x else { return "–".into() };
     let size = if x == 0.0 { 0.0 } else { libm::log10(x.abs()).floor() };
@@ -133,7 +117,7 @@ fn comparison(values: &[&ValueEntry]) -> String {
             text,
             "<tr class=\"{}\"><td>{}</td><td>{}{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>\
              <td class=\"n\">{}</td><td class=\"n\">{difference}</td><td>{}</td></tr>",
-            kind(value),
+            value.kind(),
             escaped(&value.row),
             escaped(&value.column),
             escaped(&unit),
@@ -148,7 +132,7 @@ fn comparison(values: &[&ValueEntry]) -> String {
 
 fn explanation(value: &ValueEntry) -> String {
     let mut text = escaped(&value.explanation);
-    if kind(value) != "close" && !value.experiments.is_empty() {
+    if value.kind() != "close" && !value.experiments.is_empty() {
         text += "<ul>";
         for e in &value.experiments {
             let _ = write!(text, "<li>{}: {}</li>", escaped(&e.name), number(Some(e.value)));

@@ -17,6 +17,7 @@ fn report() -> (Bench, Value) {
     let run = bench.run(&format!("thesis --quick --only {SOME} --out look"));
     assert_eq!(run.code, Some(0), "{}", run.stderr);
     assert!(run.stdout.contains("look/report.html"), "{}", run.stdout);
+    assert!(run.stdout.contains(" without a computed counterpart\n"), "{}", run.stdout);
     let document = serde_json::from_str(&bench.read("look/values.json")).unwrap();
     (bench, document)
 }
