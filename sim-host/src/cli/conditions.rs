@@ -6,6 +6,7 @@ use super::scenario_error::named;
 use super::{Ended, Failure};
 use crate::commands::Setup;
 use crate::scenario::Scenario;
+use crate::scenario::setting::{RIDERS, Setting};
 
 /// Loads and checks all conditions of a scenario.
 pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
@@ -16,7 +17,16 @@ pub(super) fn setup(scenario: &Scenario) -> Result<Setup, Failure> {
     if scenario.options.contains("plant.seed") && !drawn && setup.conditions.plant.exact() {
         complain_once("warning: --seed has no effect: sensors and motor are exact, and nothing is drawn");
     }
+    warn_of_idle_rider(scenario);
     Ok(setup)
+}
+
+/// Warns of options that describe a rider if there is none.
+pub(super) fn warn_of_idle_rider(scenario: &Scenario) {
+    let given = |setting: &&Setting| setting.name != "rider" && scenario.options.contains(setting.key);
+    for setting in RIDERS.iter().filter(given).filter(|_| !scenario.rider.is_some()) {
+        complain_once(&format!("warning: --{} has no effect: the rider is none", setting.name));
+    }
 }
 
 /// Prints the scenario, if that is requested.

@@ -11,7 +11,7 @@ use crate::design::{Knots, Plan, Progress, competitors, evaluate, evaluate_in, o
 use crate::report::figure;
 use crate::report::output::Output;
 use crate::report::table;
-use crate::scenario::law;
+use crate::scenario::{law, seed};
 use crate::sweep;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
@@ -36,7 +36,7 @@ pub(super) struct Args {
     #[arg(long, default_value_t = 400, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     evaluations: u32,
     /// Seed of the restarted simplices
-    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = seed)]
     seed: u64,
     /// Points of the schedule between 2 and 7.5 m/s, 2 to 8
     #[arg(long, default_value_t = 6, value_name = "N", value_parser = clap::value_parser!(u8).range(2..=8))]
@@ -144,8 +144,12 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let found = pool.install(|| optimise(&scenarios.training, &plan, &advanced, &stop));
     bar.finish_and_clear();
     let Some(found) = found? else {
-        complain("stopped before the first schedule was tried, nothing is written");
-        return Ok(if interrupt::stopped() { Ended::Interrupted } else { Ended::Done });
+        let early = "stopped before the first schedule was tried, nothing is written";
+        if !interrupt::stopped() {
+            return Err(format!("--budget {:?}: {early}", args.budget).into());
+        }
+        complain(early);
+        return Ok(Ended::Interrupted);
     };
     let law = plan.knots.law(&found.gains)?;
     let mut laws = competitors();

@@ -58,7 +58,11 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
         }
     }
     let store = args.results.as_deref().map(|folder| Store::open(folder, &args.files)).transpose()?;
-    interrupt::install_saying("finished records are written");
+    interrupt::install_saying(if many {
+        "the record under way is given up, finished ones are written"
+    } else {
+        "the record under way is given up"
+    });
     let bar = progress(outputs.shows_progress(), "identify", 4 * args.files.len(), "stages");
     let (mut finished, mut refused) = (BTreeMap::new(), BTreeMap::new());
     let mut open: VecDeque<usize> = (0..args.files.len()).collect();
@@ -106,6 +110,7 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     let finished: Vec<Finished> = finished.into_values().collect();
     if finished.is_empty() {
         if interrupt::stopped() {
+            complain("interrupted: no record is finished, nothing is written");
             return Ok(Ended::Interrupted);
         }
         return Err("no record could be used".into());

@@ -10,6 +10,7 @@ use crate::commands::identify_text::{ChoiceTextError, drift, percent, select};
 use crate::identify::{Drift, Hold, Select, Signal, symbols};
 use crate::range::{TimeError, time, within};
 use crate::rider::{MAX_DELAY_S, Neuromuscular};
+use crate::scenario::seed;
 use std::path::PathBuf;
 
 /// Options of `identify RECORD`.
@@ -67,7 +68,7 @@ pub(super) struct RiderArgs {
     #[command(flatten)]
     pub(super) recording: RecordingArgs,
     /// Seed of the global search
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     pub(super) seed: u64,
     /// Write the rider as a file for --rider, one row per record
     #[arg(long, value_name = "FILE")]

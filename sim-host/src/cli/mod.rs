@@ -55,9 +55,11 @@ mod thesis;
 mod threads;
 mod weave_args;
 
-use clap::{Parser, Subcommand};
+use crate::report::output::OutputError;
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use ended::{Ended, Failure, UsageError, is_broken_pipe};
 use outputs::warn;
+use std::io::Write;
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
@@ -151,7 +153,12 @@ enum Command {
 
 /// Runs the program: arguments from the process, results to standard output, errors to standard error.
 pub fn run() -> ExitCode {
-    let cli = Cli::parse();
+    let command = with_negative_numbers(Cli::command());
+    let cli = match command.try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches)) {
+        Ok(cli) => cli,
+        Err(help) if !help.use_stderr() => return code(shown(&help)),
+        Err(usage) => usage.exit(),
+    };
     interrupt::handle_signals();
     if let Err(why) = inputs::refuse_overwriting(std::env::args_os().skip(1)) {
         outputs::complain(&format!("error: {why}"));
@@ -183,6 +190,27 @@ pub fn run() -> ExitCode {
         }
         Command::Schema { document } => schema::run(&document),
     };
+    code(ended)
+}
+
+/// Lets every option take a negative number, so that the error is about its range.
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    command
+        .mut_args(|arg| {
+            let option = !arg.is_positional() && arg.get_action().takes_values();
+            if option { arg.allow_negative_numbers(true) } else { arg }
+        })
+        .mut_subcommands(with_negative_numbers)
+}
+
+/// Writes the help or the version to standard output.
+fn shown(help: &clap::Error) -> Result<Ended, Failure> {
+    let written = help.print().and_then(|()| std::io::stdout().flush());
+    written.map(|()| Ended::Done).map_err(|error| OutputError::of_standard(error).into())
+}
+
+/// The exit code of a command, with its error on standard error.
+fn code(ended: Result<Ended, Failure>) -> ExitCode {
     match ended {
         Ok(Ended::Done) => ExitCode::SUCCESS,
         Ok(Ended::Interrupted) => ExitCode::from(130),

@@ -1,6 +1,7 @@
 //! Options of the command line from the settings of a scenario, and the scenario that the given options mean.
 
 use super::Failure;
+use super::conditions::warn_of_idle_rider;
 use super::outputs::complain_once;
 use super::scenario_error::named;
 use crate::ride::FallCriterion;
@@ -227,6 +228,7 @@ impl Options<Rider> {
     pub(super) fn rider(&self) -> Result<Option<LoadedRider>, Failure> {
         let mut scenario = Scenario::default();
         self.apply(&mut scenario)?;
+        warn_of_idle_rider(&scenario);
         Ok(scenario.rider.load().map_err(|e| named(&scenario, &e))?)
     }
 }

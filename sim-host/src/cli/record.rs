@@ -10,7 +10,7 @@ use crate::report::output::Output;
 use crate::report::perturbation::PerturbationDocument;
 use crate::report::table::csv_text;
 use crate::ride::ScheduleSpeed;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, seed};
 use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "\
@@ -76,7 +76,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
     steer_drift: f64,
     /// Seed of pulses, noise and drift
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed)]
     seed: u64,
     /// After a fall, write the record up to it; without, a fall is an error and nothing is written
     #[arg(long)]

@@ -13,7 +13,7 @@ use crate::report::replay::{ReplayResult, ReplaysDocument, summary_text, text};
 use crate::report::table;
 use crate::report::tool::SCHEMA;
 use crate::report::tool::Tool;
-use crate::scenario::{Preset, Scenario};
+use crate::scenario::{Preset, Scenario, seed};
 use control::wire::encode_frame;
 use std::path::{Path, PathBuf};
 
@@ -85,7 +85,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "CHANNEL:KIND@FROM..TO", allow_hyphen_values = true)]
     fault: Vec<String>,
     /// Seed of the faults' noise and dropouts
-    #[arg(long, value_name = "N", default_value_t = 0, requires = "fault")]
+    #[arg(long, value_name = "N", default_value_t = 0, requires = "fault", value_parser = seed)]
     seed: u64,
     /// Time between two rows of the table, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.01, value_parser = positive)]

@@ -1,6 +1,8 @@
 //! Writes result files atomically: to a temporary file in the same folder, then renamed.
 
-use std::fs::{OpenOptions, metadata};
+#[cfg(unix)]
+use std::fs::File;
+use std::fs::{Metadata, OpenOptions, metadata};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use tempfile::{Builder, NamedTempFile};
@@ -21,9 +23,40 @@ enum Place {
     /// Standard output.
     Standard,
     /// A device or a pipe: written to, never replaced.
-    Stream(PathBuf),
+    Stream(FileIdentity),
     /// A file: its folder with links resolved, and its name in it.
     File(PathBuf, PathBuf),
+}
+
+/// What two paths of one file, device or pipe have in common: device and inode.
+#[cfg(unix)]
+type FileIdentity = (u64, u64);
+/// What two paths of one file, device or pipe have in common.
+#[cfg(not(unix))]
+type FileIdentity = PathBuf;
+
+#[cfg(unix)]
+fn identity(_: &Path, there: &Metadata) -> io::Result<FileIdentity> {
+    use std::os::unix::fs::MetadataExt;
+    Ok((there.dev(), there.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(path: &Path, _: &Metadata) -> io::Result<FileIdentity> {
+    path.canonicalize()
+}
+
+/// Whether a path is another name of standard output, such as `/dev/stdout`.
+#[cfg(unix)]
+fn is_standard_output(path: &Path, there: &Metadata) -> bool {
+    use std::os::fd::AsFd;
+    let standard = io::stdout().as_fd().try_clone_to_owned().and_then(|file| File::from(file).metadata());
+    standard.is_ok_and(|standard| identity(path, there).ok() == identity(path, &standard).ok())
+}
+
+#[cfg(not(unix))]
+fn is_standard_output(_: &Path, _: &Metadata) -> bool {
+    false
 }
 
 /// Why a result cannot be written.
@@ -35,6 +68,11 @@ pub struct OutputError {
 }
 
 impl OutputError {
+    /// The error of standard output.
+    pub(crate) fn of_standard(source: io::Error) -> Self {
+        Self { path: "standard output".into(), source }
+    }
+
     /// Whether the folder is missing.
     pub(crate) fn is_not_found(&self) -> bool {
         self.source.kind() == io::ErrorKind::NotFound
@@ -74,8 +112,8 @@ impl Output {
     pub fn finish(&self, content: &[u8]) -> Result<(), OutputError> {
         let written = match &self.place {
             Place::Standard => io::stdout().lock().write_all(content).and_then(|()| io::stdout().flush()),
-            Place::Stream(path) => {
-                OpenOptions::new().write(true).open(path).and_then(|mut f| f.write_all(content))
+            Place::Stream(_) => {
+                OpenOptions::new().write(true).open(&self.path).and_then(|mut f| f.write_all(content))
             }
             Place::File(folder, name) => temporary(folder, content)
                 .and_then(|file| file.persist(folder.join(name)).map(drop).map_err(|e| e.error)),
@@ -94,7 +132,9 @@ impl Place {
             Ok(there) if there.is_dir() => {
                 return Err(io::Error::new(io::ErrorKind::IsADirectory, "it is a folder"));
             }
-            Ok(there) if !there.is_file() => return Ok(Place::Stream(path.into())),
+            // Also a file to which standard output is redirected: replacing it would lose what else is written there.
+            Ok(there) if is_standard_output(path, &there) => return Ok(Place::Standard),
+            Ok(there) if !there.is_file() => return Ok(Place::Stream(identity(path, &there)?)),
             Ok(_) => {
                 OpenOptions::new().append(true).open(path)?;
                 path.canonicalize()?

@@ -29,6 +29,13 @@ pub(super) fn whole<T: std::str::FromStr>(text: &str) -> Result<T, TextError> {
     text.trim().parse().map_err(|_| form(text, "not a whole number in range"))
 }
 
+/// A seed of random numbers.
+pub(crate) fn seed(text: &str) -> Result<u64, TextError> {
+    // TOML has no larger whole numbers.
+    let seed = whole(text).ok().filter(|seed| *seed <= i64::MAX as u64);
+    seed.ok_or_else(|| TextError::Seed(text.into()))
+}
+
 /// A word among those of an enum.
 pub(super) fn word<'a, T: serde::Deserialize<'a>>(text: &'a str) -> Result<T, TextError> {
     let deserializer: StrDeserializer<'a, Error> = text.into_deserializer();

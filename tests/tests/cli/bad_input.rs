@@ -219,6 +219,11 @@ fn numbers_out_of_range() {
         ("ride --speed 4 --sensor-delay 1.5ms", &["--sensor-delay", "1.5 ms", "1 ms and 2 ms"]),
         ("ride --speed 4 --sensor-delay 5s", &["--sensor-delay", "5000 ms", "0 to 1000 ms"]),
         ("ride --speed 4 --assist ideal --torque-limit 7", &["limits", "ideal"]),
+        ("ride --speed 4 --preset product --set rate_hz=100", &["input.max_gap_ms = 5", "10 to 1000"]),
+        (
+            "ride --speed 4 --preset product --set input.max_gap_ms=0.1",
+            &["input.max_gap_ms = 0.1", "1 to 1000"],
+        ),
         ("basin --speeds 4 --max-rate -1", &["max rate", "-1", "0.01 to 100"]),
         ("basin --speeds 4 --scan-step 0", &["scan step", "0", "0.001 to 30"]),
         ("basin --speeds 4 --tolerance -1", &["tolerance", "-1"]),
@@ -235,6 +240,18 @@ fn numbers_out_of_range() {
         ("ride --speed 4 --sensor-delay -5ms", "0 s to 3600 s"),
         ("ride --speed 4 --sensor-delay 5", "20ms"),
         ("basin --threads 0", "1..=1024"),
+        ("basin --threads -1", "1..=1024"),
+        ("thesis --threads -1", "1..=1024"),
+        ("design --knots -1", "2..=8"),
+        ("design --evaluations -1", "1..=1000000"),
+        ("eigen --rider smart --roots -1", "4..=40"),
+        ("basin --uncertain -1", "2..=10000"),
+        ("faults --port none --baud -1", "300..=4000000"),
+        ("ride --speed 4 --seed -1", "from 0 to 9223372036854775807"),
+        ("design --seed -1", "from 0 to 9223372036854775807"),
+        ("record --rider young --speed 4 --seed -1", "from 0 to 9223372036854775807"),
+        ("replay ride.csv --fault gyro.x:nan@1s --seed -1", "from 0 to 9223372036854775807"),
+        ("identify ride.csv --seed -1", "from 0 to 9223372036854775807"),
     ] {
         let run = bench.run(line);
         assert!(run.code == Some(2) && run.stderr.contains(word), "{line}: {}", run.stderr);
@@ -323,5 +340,11 @@ fn outputs_that_can_not_be() {
     bench.run("ride --speed 4 --csv out --json ./out").rejected_naming(&["--csv", "--json", "same place"]);
     bench.run("ride --speed 4 --csv out --frames out").rejected_naming(&["--csv", "--frames", "same place"]);
     bench.run("ride --speed 4 --csv - --json").rejected_naming(&["--csv", "--json", "same place"]);
+    for standard in ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"] {
+        let line = format!("ride --speed 4 --csv - --json {standard}");
+        bench.run(&line).rejected_naming(&["--csv", "--json", "same place"]);
+    }
+    let run = bench.run("ride --speed 4 --csv /dev/stderr --json /dev/fd/2");
+    run.rejected_naming(&["--csv", "--json", "same place"]);
     assert_eq!(bench.files(), before);
 }

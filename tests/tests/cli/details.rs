@@ -109,7 +109,7 @@ fn missing_eigenvalues_are_reported() {
 
 /// Situation: options that act on nothing beside the others.
 /// Action: run with them, and with what they act on.
-/// Must hold: refused as wrong usage, or with the key; a seed that draws nothing is a warning.
+/// Must hold: refused as wrong usage, or with the key; a seed that draws nothing and the use of no rider are warnings.
 #[test]
 fn options_that_act_on_nothing_are_told() {
     let bench = Bench::new(PROGRAM);
@@ -131,6 +131,18 @@ fn options_that_act_on_nothing_are_told() {
     assert!(warned(seeded));
     assert!(!warned(&format!("{seeded} --sensor gyro:noise=0.01")));
     assert!(!warned("ride --speed 4"));
+    for command in ["ride --speed 4", "basin --speeds 4 --max-rate 1", "eigen --speeds 4"] {
+        for option in ["--delay 30ms", "--gains best", "--gains-outside hold"] {
+            let warned = |rider: &str| bench.run(&format!("{command} --rider {rider} {option}")).stderr;
+            let name = option.split(' ').next().unwrap_or_default();
+            assert_eq!(
+                warned("none"),
+                format!("warning: {name} has no effect: the rider is none\n"),
+                "{command}"
+            );
+            assert_eq!(warned("smart"), "", "{command} {option}");
+        }
+    }
 }
 
 /// Situation: a start without a speed, and limits of the ideal law.

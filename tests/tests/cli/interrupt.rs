@@ -205,6 +205,24 @@ fn eigenvalues_end_soon() {
     assert_eq!(bench.files(), ["rider.toml"]);
 }
 
+/// Situation: the identification of one record, with a delay profile that takes minutes.
+/// Action: Ctrl-C.
+/// Must hold: exit code 130; it says that nothing is written, and nothing of finished records; no file.
+#[test]
+fn an_interrupted_identification_says_that_nothing_is_written() {
+    let bench = Bench::new(PROGRAM);
+    assert_eq!(bench.run("record --rider young --speed 4 --out record.csv").code, Some(0));
+    let line = "identify record.csv --delay-profile 0:120:0.2 --out rider.toml --json out.json";
+    let mut child = spawn(&bench, line);
+    wait_for_work(&mut child);
+    press_ctrl_c(&child);
+    let run = Run::from(child.wait_with_output().unwrap());
+    assert_eq!(run.code, Some(130), "{run:?}");
+    assert!(run.stderr.contains("no record is finished, nothing is written"), "{}", run.stderr);
+    assert!(!run.stderr.contains("finished ones are written"), "{}", run.stderr);
+    assert_eq!(bench.files(), ["record.csv"]);
+}
+
 /// Situation: a column that takes minutes, results going to a new and to an older file.
 /// Action: Ctrl-C twice.
 /// Must hold: exit code 130 at once; the older file unchanged, nothing new.

@@ -121,9 +121,9 @@ fn every_help_has_examples_whose_options_exist() {
     }
 }
 
-/// Situation: a fall, a wrong option, a missing file, the version.
+/// Situation: a fall, a wrong option, a count out of range, a missing file, a quantity out of range, the version.
 /// Action: run each.
-/// Must hold: exit codes 0, 2, 1 and 0; the version has the commit in it.
+/// Must hold: exit codes 0, 2, 2, 1, 1 and 0; the version has the commit in it.
 #[test]
 fn exit_codes() {
     let bench = Bench::new(PROGRAM);
@@ -134,7 +134,13 @@ fn exit_codes() {
     {
         assert_eq!(code(usage), Some(2), "{usage}");
     }
+    for count in
+        ["basin --threads 0", "basin --uncertain 1", "basin --threads -2", "ride --speed 4 --seed -1"]
+    {
+        assert_eq!(code(count), Some(2), "{count}");
+    }
     assert_eq!(code("eigen --bicycle missing.toml"), Some(1));
+    assert_eq!(code("basin --max-rate 0"), Some(1));
     let version = bench.run("--version").stdout;
     let expected = format!("sim-host {} (", env!("CARGO_PKG_VERSION"));
     assert!(version.starts_with(&expected) && version.trim_end().ends_with(')'), "{version}");

@@ -123,6 +123,32 @@ fn a_pipe_is_written_to_and_not_replaced() {
     assert_eq!(bench.files(), ["pipe"]);
 }
 
+/// Situation: standard output is redirected to a file.
+/// Action: write a document to `/dev/stdout`, after another line.
+/// Must hold: the file has the line and the document, and no text besides.
+#[test]
+fn standard_output_by_another_name_is_not_replaced() {
+    let bench = Bench::new(PROGRAM);
+    let run = bench.shell("{ echo first; \"$0\" ride --speed 4 --json /dev/stdout; } > out");
+    assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{run:?}");
+    let text = bench.read("out");
+    let document = text.strip_prefix("first\n").unwrap_or_else(|| panic!("{text}"));
+    assert!(serde_json::from_str::<Value>(document).is_ok(), "{document}");
+}
+
+/// Situation: standard output takes no more.
+/// Action: request the help and the version, of the program and of a command.
+/// Must hold: exit code 1 naming the place.
+#[test]
+fn help_that_cannot_be_written_is_an_error() {
+    let bench = Bench::new(PROGRAM);
+    for words in ["--help", "--version", "help ride", "basin -h"] {
+        let run = bench.shell(&format!("\"$0\" {words} > /dev/full"));
+        run.rejected_naming(&["standard output", "No space left"]);
+        assert_eq!(bench.run(words).code, Some(0), "{words}");
+    }
+}
+
 /// Situation: a disk that is full after half a kilobyte.
 /// Action: write a document over an older one, and one to standard output.
 /// Must hold: exit code 1 naming the place; the older file unchanged, nothing beside it.

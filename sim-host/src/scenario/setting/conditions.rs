@@ -5,7 +5,7 @@ use super::{PLAIN, Setting};
 use crate::parameters::Value;
 use crate::range::time;
 use crate::scenario::content::{Content, NONE};
-use crate::scenario::{TextError, text};
+use crate::scenario::text;
 
 /// Bicycle, rider, law, limits, plant and fall: what a ride needs besides its disturbance.
 pub const CONDITIONS: &[Setting] = &[
@@ -189,11 +189,8 @@ pub const CONDITIONS: &[Setting] = &[
         value: "N",
         help: "Seed of noise and dropouts; each ride derives its own from its initial state",
         default: Some("0"),
-        hyphen: false,
         set: |s, text| {
-            // TOML has no larger whole numbers.
-            let seed = text::whole(text).ok().filter(|seed| *seed <= i64::MAX as u64);
-            s.plant.seed = seed.ok_or_else(|| TextError::Seed(text.into()))?;
+            s.plant.seed = text::seed(text)?;
             Ok(())
         },
         ..PLAIN
