@@ -124,6 +124,18 @@ fn a_mistake_is_named() {
         (&config, to("rate_hz", None), RejectReason::NeverOff, "rate_hz can't be off, only 100 to 10000"),
         (
             &config,
+            to("rate_hz", 100.0),
+            RejectReason::OutOfRange,
+            "input.max_gap_ms = 5 is outside 10 to 1000",
+        ),
+        (
+            &config,
+            to("input.max_gap_ms", 0.1),
+            RejectReason::OutOfRange,
+            "input.max_gap_ms = 0.1 is outside 1 to 1000",
+        ),
+        (
+            &config,
             to("permit.ramp_in_ticks", 0.5),
             RejectReason::NotWhole,
             "permit.ramp_in_ticks = 0.5 is not a whole number of 0 to 20000",
