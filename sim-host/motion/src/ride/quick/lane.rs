@@ -59,7 +59,10 @@ impl Lane {
     ) -> Option<Option<Outcome>> {
         if fallen(&conditions.fall, after) {
             let (tau, by) = time_of_fall(&conditions.fall, (before, after), h);
-            return Some(Some(Outcome::Fallen { time_s: self.t + tau, by }));
+            let time_s = self.t + tau;
+            // A fall shortly before the limit can be after it in the exact ride.
+            let decided = clear * time_s < conditions.time_limit_s;
+            return Some(decided.then_some(Outcome::Fallen { time_s, by }));
         }
         self.t += h;
         let angles = [after.roll.abs(), after.steer.abs()];
