@@ -67,7 +67,8 @@ fn long_periods_and_a_standing_clock_are_timing_faults() {
 #[test]
 fn a_standing_clock_ends_the_torque() {
     for other in [None, Some("gyro:missing@203ms"), Some("engage:missing@203ms")] {
-        let faults = ["clock:stuck@200ms"].into_iter().chain(other).map(|text| text.parse().unwrap()).collect();
+        let faults =
+            ["clock:stuck@200ms"].into_iter().chain(other).map(|text| text.parse().unwrap()).collect();
         let trace = traced(&ridden(Plant { faults, ..Plant::default() }), KNOCK).1;
         let at = |s: f64| trace.iter().find(|p| p.t >= s).map_or(0.0, |p| p.torque);
         assert!(at(0.2).abs() > 0.5, "{other:?}: {} N m before", at(0.2));
