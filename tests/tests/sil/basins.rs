@@ -1,8 +1,8 @@
 //! Properties of a basin search.
 
 use control::{Config, Law};
-use sim_host::basin::{Axis, Method, Search, basin, column, rmse};
-use sim_host::ride::{rides, side_by_side};
+use sim_host::basin::{Axis, Column, Method, Search, basin, column, rmse, together};
+use sim_host::ride::rides;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
 use tests::sets::every;
 
@@ -75,33 +75,30 @@ fn the_number_of_threads_does_not_matter() {
 }
 
 /// Situation: an interruption after the first column.
-/// Action: search plainly, column by column, and fast, eight columns at a time.
+/// Action: search plainly, column by column, and fast, in groups of columns.
 /// Must hold: completed columns are preserved, and no further ones are begun.
 #[test]
 fn an_interruption_preserves_completed_columns() {
-    let speeds: Vec<f64> = (0..20).map(|i| 2.0 + 0.25 * f64::from(i)).collect();
-    // The last group of the fast search has what is left.
-    let together = side_by_side();
-    let left = (speeds.len() - 1) % together + 1;
-    for (method, first_group, last_group) in [(Method::Plain, 1, 1), (Method::Fast, together, left)] {
+    let speeds: Vec<f64> = (0..50).map(|i| 2.0 + 0.1 * f64::from(i)).collect();
+    for method in [Method::Plain, Method::Fast] {
+        let search = Search { method, ..search(&speeds, 2.0) };
         let done = std::sync::atomic::AtomicUsize::new(0);
         let count = || done.load(std::sync::atomic::Ordering::SeqCst);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
         let partial = pool.install(|| {
-            basin(
-                &alone(),
-                &Search { method, ..search(&speeds, 2.0) },
-                |_| {
-                    done.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
-                },
-                || count() >= 1,
-            )
+            let finished = |_: &Column| {
+                done.fetch_add(1, std::sync::atomic::Ordering::SeqCst);
+            };
+            basin(&alone(), &search, finished, || count() >= 1)
         });
         let partial = partial.expect("a basin");
-        // On one thread a group at either end is the first.
+        // On one thread a group at either end is the first; the last has what is left.
+        let group = pool.install(|| together(&alone(), &search, speeds.len()));
+        assert!(group < speeds.len(), "{group}");
+        let last_group = (speeds.len() - 1) % group + 1;
         let found = partial.columns.len();
         let first = partial.columns[0].speed;
-        let begun = (found == first_group && first == 2.0)
+        let begun = (found == group && first == 2.0)
             || (found == last_group && first == speeds[speeds.len() - last_group]);
         assert!(begun, "{method:?}: {found} from {first} m/s");
     }
