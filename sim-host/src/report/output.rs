@@ -69,7 +69,7 @@ pub struct OutputError {
 
 impl OutputError {
     /// The error of standard output.
-    pub(crate) fn of_standard(source: io::Error) -> Self {
+    pub fn of_standard(source: io::Error) -> Self {
         Self { path: "standard output".into(), source }
     }
 

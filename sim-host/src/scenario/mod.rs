@@ -41,7 +41,7 @@ pub use resolve::Resolved;
 pub use rider::{LoadedRider, RiderChoice};
 pub use search::{SearchChoice, Speeds};
 pub use speeds::SpeedsError;
-pub(crate) use text::seed;
+pub use text::seed;
 pub use text_error::TextError;
 pub use ticks::TicksError;
 pub use unit::unit_of;

@@ -29,8 +29,11 @@ pub(super) fn whole<T: std::str::FromStr>(text: &str) -> Result<T, TextError> {
     text.trim().parse().map_err(|_| form(text, "not a whole number in range"))
 }
 
-/// A seed of random numbers.
-pub(crate) fn seed(text: &str) -> Result<u64, TextError> {
+/// A seed of random numbers, from 0 to 2^63 - 1.
+///
+/// # Errors
+/// The text is no such number.
+pub fn seed(text: &str) -> Result<u64, TextError> {
     // TOML has no larger whole numbers.
     let seed = whole(text).ok().filter(|seed| *seed <= i64::MAX as u64);
     seed.ok_or_else(|| TextError::Seed(text.into()))
