@@ -116,7 +116,8 @@ impl State {
 /// One control period: computes the motor torque from the sensors' samples of this instant.
 ///
 /// Without a valid roll rate or speed the law requests zero torque, reached at the rate limit. In the modes before
-/// standby, while the clock stands, and on any violation found by the guard, the torque is zero at once.
+/// standby and on any violation found by the guard, the torque is zero at once; while the clock stands it starts at zero in
+/// every period.
 pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
     let config = &plan.config;
     let elapsed_us = state.previous_us.map_or(plan.period_us, |previous| frame.now_us.wrapping_sub(previous));
@@ -261,7 +262,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
 }
 
 /// Counts a short period that ends now. After too many in succession the clock stands: no rate of change can be kept, and the torque
-/// is zero at once.
+/// starts at zero in every period. It remains there, as no time passes in which a limited torque could rise.
 #[cold]
 #[inline(never)]
 fn note_short_period(plan: &Plan, state: &mut State, now_us: u32, elapsed_us: u32) {

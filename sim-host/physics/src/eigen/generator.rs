@@ -44,7 +44,7 @@ fn differentiation(n: usize) -> DMatrix<f64> {
     d
 }
 
-/// All eigenvalues of a matrix, balanced before; `None` if it has entries that are not finite.
+/// All eigenvalues of a matrix, balanced before; `None` as of [`spectrum`].
 pub(super) fn eigenvalues(mut matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     balance_parlett_reinsch(&mut matrix);
     spectrum(&matrix)

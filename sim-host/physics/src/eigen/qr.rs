@@ -9,7 +9,7 @@ const ITERATIONS_PER_ROW: usize = 100;
 /// Largest number of similar matrices that are tried.
 const ATTEMPTS: usize = 8;
 
-/// All eigenvalues of a square matrix, in no order; `None` if it has entries that are not finite.
+/// All eigenvalues of a square matrix, in no order; `None` if it has entries that are not finite, or if no attempt converges.
 ///
 /// The double-shift QR iteration of nalgebra has no exceptional shifts, so a matrix can stagnate: its shifts repeat. Then
 /// it is repeated on the matrix reflected from both sides, which has the same eigenvalues and another sequence of shifts.
