@@ -1,6 +1,6 @@
 //! The simulator's equations compared with Newton's and Euler's for each body.
 
-use sim_host::bicycle::{Geometry, State};
+use sim_host::bicycle::{FullState, Geometry, Motion, State};
 use std::cell::Cell;
 use tests::draws::{Draw, runner, situations};
 use tests::flow;
@@ -66,6 +66,35 @@ fn a_thousand_random_states_of_all_bicycles_accelerate_alike() {
         "roll to {roll:.3}, steer to {steer:.3} rad, steer acceleration to {steer_acceleration:.0} rad/s^2"
     );
     assert!(count == 1000 && roll > 1.0 && steer > 1.0 && steer_acceleration > 1000.0);
+}
+
+/// Situation: the same random states, with all six speeds as state.
+/// Action: their accelerations.
+/// Holds: they are those of Newton's and Euler's equations, the dependent ones too.
+#[test]
+fn six_speeds_accelerate_alike() {
+    let count = Cell::new(0);
+    runner(1000)
+        .run(&situations(80_f64.to_radians()), |draw| {
+            let s = newton_euler::solve(&draw.parameters, &draw.state, &draw.torques)
+                .expect("the wheel reaches the ground");
+            let full = FullState::new(&Motion::new(&draw.geometry, &draw.state), &draw.state);
+            let [roll, pitch, yaw, steer, rear, front] =
+                full.rate(&draw.geometry, &draw.torques).expect("no singular configuration").speeds;
+            let off = relative(&[
+                (roll, s.roll_acceleration),
+                (steer, s.steer_acceleration),
+                (rear, s.rear_wheel_acceleration),
+                (pitch, s.pitch_acceleration),
+                (yaw, s.yaw_acceleration),
+                (front, s.front_wheel_acceleration),
+            ]);
+            proptest::prop_assert!(off < 1e-10, "{}: {off:e}", draw.name);
+            count.set(count.get() + 1);
+            Ok(())
+        })
+        .unwrap();
+    assert_eq!(count.get(), 1000);
 }
 
 #[test]

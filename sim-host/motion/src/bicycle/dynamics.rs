@@ -96,9 +96,9 @@ impl<S> From<[S; 3]> for Accelerations<S> {
     }
 }
 
-/// Solves the symmetric positive-definite system by elimination without pivoting, rear wheel first.
+/// Solves the symmetric positive-definite system by elimination without pivoting, the third unknown first.
 #[inline(always)]
-fn solve<S: Scalar>(&[a11, a12, a13, a22, a23, a33]: &[S; 6], [r1, r2, r3]: [S; 3]) -> [S; 3] {
+pub(super) fn solve<S: Scalar>(&[a11, a12, a13, a22, a23, a33]: &[S; 6], [r1, r2, r3]: [S; 3]) -> [S; 3] {
     let one = S::constant(1.0);
     let inv3 = one / a33;
     let (q1, q2) = (a13 * inv3, a23 * inv3);

@@ -1,10 +1,11 @@
-//! The bicycle with all six speeds as state, and the constraint forces at the front contact as unknowns.
+//! The bicycle with all six speeds as state; which three of them are independent is chosen at every instant.
 //!
 //! Roll rate, steer rate and rear wheel rate determine the other speeds except at two singular
 //! configurations: the front wheel across the path (the rear wheel can't roll), and the front wheel beside
-//! the rear wheel (only pitch moves). The motion passes these smoothly. This formulation follows it, at ten
-//! times the cost. `docs/bicycle.md`, section 9.
+//! the rear wheel (only pitch moves). The motion passes these smoothly, and there the yaw rate and the pitch rate determine the
+//! others. `docs/bicycle.md`, section 9.
 
+use super::dynamics::solve;
 use super::inertia::{Inertia, Momenta};
 use super::pitch::Attitude;
 use super::{Geometry, Motion, Pose, State, Torques, Velocities};
@@ -60,105 +61,135 @@ impl FullState {
     #[inline(always)]
     pub fn rate(&self, b: &Geometry, torques: &Torques<f64>) -> Option<FullState> {
         let pose = self.pose(b);
-        let unit: [Velocities<f64>; 6] = std::array::from_fn(|i| {
-            let mut speeds = [0.0; 6];
-            speeds[i] = 1.0;
-            velocities(&pose, &speeds)
-        });
-        let actual = velocities(&pose, &self.speeds);
-        let inertia = Inertia::new(b, &pose);
-        let (bias, free) = super::bias::bias(b, &pose, &actual, &inertia, None);
-        let [roll, pitch, yaw, steer, rear, front] = &unit;
-        let momenta = [
-            inertia.momenta::<true, false, false>(b, &pose, roll),
-            inertia.momenta::<false, false, false>(b, &pose, pitch),
-            inertia.momenta::<false, false, false>(b, &pose, yaw),
-            inertia.momenta::<false, true, false>(b, &pose, steer),
-            inertia.momenta::<false, false, true>(b, &pose, rear),
-            inertia.momenta::<false, false, false>(b, &pose, front),
+        self.rate_under(b, &pose, &Constraints::new(b, &pose), torques)
+    }
+
+    /// As [`Self::rate`], with a choice of the independent speeds.
+    #[inline(always)]
+    fn rate_under(
+        &self,
+        b: &Geometry,
+        pose: &Pose<f64>,
+        constraints: &Constraints,
+        torques: &Torques<f64>,
+    ) -> Option<FullState> {
+        let actual = velocities(pose, &self.speeds);
+        let inertia = Inertia::new(b, pose);
+        let (bias, free) = super::bias::bias(b, pose, &actual, &inertia, None);
+        let steer = Vec3::new(-pose.trail.y, pose.trail.x, 0.0);
+        let [across, along] = constraints.independent;
+        let closed = |units: [f64; 3], free| velocities(pose, &constraints.speeds(b, pose, units, free));
+        let u = closed([1.0, 0.0, 0.0], across);
+        let v = closed([0.0, 1.0, 0.0], steer);
+        let w = closed([0.0, 0.0, 1.0], along);
+        // Without independent accelerations, the dependent ones close the contact.
+        let closing = closed([0.0; 3], free);
+
+        let momenta = |v: &Velocities<f64>| inertia.momenta::<true, true, true>(b, pose, v);
+        let power = |v: &Velocities<f64>, f: &Momenta<f64>| v.power::<true, true, true>(b, pose, f);
+        let (of_u, of_v, of_w, of_closing) = (momenta(&u), momenta(&v), momenta(&w), momenta(&closing));
+        let mass = [
+            power(&u, &of_u),
+            power(&u, &of_v),
+            power(&u, &of_w),
+            power(&v, &of_v),
+            power(&v, &of_w),
+            power(&w, &of_w),
         ];
-        let powers = |f: &Momenta<f64>| {
-            [
-                roll.power::<true, false, false>(b, &pose, f),
-                pitch.power::<false, false, false>(b, &pose, f),
-                yaw.power::<false, false, false>(b, &pose, f),
-                steer.power::<false, true, false>(b, &pose, f),
-                rear.power::<false, false, true>(b, &pose, f),
-                front.power::<false, false, false>(b, &pose, f),
-            ]
-        };
-        let mut equations: Equations = [[0.0; UNKNOWNS + 1]; UNKNOWNS];
-        for (j, (unit, momenta)) in unit.iter().zip(&momenta).enumerate() {
-            for (i, power) in powers(momenta).into_iter().enumerate().take(j + 1) {
-                equations[i][j] = power;
-                equations[j][i] = power;
-            }
-            let contact = contact_velocity(b, &pose, unit);
-            for (i, c) in [contact.x, contact.y, contact.z].into_iter().enumerate() {
-                equations[6 + i][j] = c;
-                equations[j][6 + i] = c;
-            }
-        }
-        let [mut p0, p1, p2, mut p3, p4, p5] = powers(&bias).map(|power| -power);
-        p0 += torques.roll;
-        p3 += torques.steer;
-        let known = [p0, p1, p2, p3, p4, p5, -free.x, -free.y, -free.z];
-        for (row, known) in equations.iter_mut().zip(known) {
-            row[UNKNOWNS] = known;
-        }
-        let solution = solve(equations)?;
-        let speeds = std::array::from_fn(|i| solution[i]);
-        Some(FullState { angles: [actual.roll, actual.pitch, actual.steer], speeds })
+        let force = [&u, &v, &w].map(|v| {
+            v.roll * torques.roll + v.steer * torques.steer - power(v, &bias) - power(v, &of_closing)
+        });
+        let [by_u, by_v, by_w] = solve(&mass, force);
+        let sum =
+            |of: fn(&Velocities<f64>) -> f64| by_u * of(&u) + by_v * of(&v) + by_w * of(&w) + of(&closing);
+        let speeds = [
+            sum(|v| v.roll),
+            sum(|v| v.pitch),
+            sum(|v| v.yaw),
+            sum(|v| v.steer),
+            sum(|v| v.rear_spin),
+            sum(|v| v.front_spin),
+        ];
+        let angles = [actual.roll, actual.pitch, actual.steer];
+        speeds.iter().all(|x| x.is_finite()).then_some(FullState { angles, speeds })
     }
 }
 
-/// The derivatives of six speeds, and three constraint forces.
-const UNKNOWNS: usize = 9;
-
-/// Linear equations: in each row the coefficients, then the known side.
-type Equations = [[f64; UNKNOWNS + 1]; UNKNOWNS];
-
-/// Solves the equations by elimination; `None` if a pivot is zero.
-///
-/// No pivots are chosen. The part of the six speeds is a mass matrix, positive definite, and what its elimination leaves of the
-/// constraint forces is negative definite, since the constraints are independent: in this order no pivot is zero.
-#[inline(always)]
-fn solve(mut rows: Equations) -> Option<[f64; UNKNOWNS]> {
-    let per_pivot = [
-        eliminate::<0>(&mut rows),
-        eliminate::<1>(&mut rows),
-        eliminate::<2>(&mut rows),
-        eliminate::<3>(&mut rows),
-        eliminate::<4>(&mut rows),
-        eliminate::<5>(&mut rows),
-        eliminate::<6>(&mut rows),
-        eliminate::<7>(&mut rows),
-        eliminate::<8>(&mut rows),
-    ];
-    let mut solution = rows.map(|row| row[UNKNOWNS]);
-    for i in (0..UNKNOWNS).rev() {
-        solution[i] *= per_pivot[i];
-        for j in 0..UNKNOWNS {
-            if j < i {
-                solution[j] -= rows[j][i] * solution[i];
-            }
-        }
-    }
-    per_pivot.iter().all(|x| x.is_finite()).then_some(solution)
+/// The rolling constraints at the front contact, solved for roll or pitch rate, yaw or rear wheel rate, and the front wheel's rate.
+/// Of either pair that speed is dependent which moves the contact more: no divisor is small in both singular configurations.
+struct Constraints {
+    /// Whether the pitch rate is dependent and the roll rate independent, or the reverse.
+    pitch: bool,
+    /// Whether the yaw rate is dependent and the rear wheel's rate independent, or the reverse.
+    yaw: bool,
+    /// Velocity of the material point at the front contact per unit of the two dependent speeds.
+    dependent: [Vec3<f64>; 2],
+    /// The same of the two independent speeds.
+    independent: [Vec3<f64>; 2],
+    /// One over the vertical and lateral components of the dependent ones.
+    per: [f64; 2],
 }
 
-/// Eliminates the unknown `I` from the rows below. Returns the reciprocal of its pivot.
-#[inline(always)]
-fn eliminate<const I: usize>(rows: &mut Equations) -> f64 {
-    let pivot = rows[I];
-    let per_pivot = 1.0 / pivot[I];
-    for row in &mut rows[I + 1..] {
-        let part = row[I] * per_pivot;
-        for j in I + 1..=UNKNOWNS {
-            row[j] -= part * pivot[j];
+/// Velocities of the material point at the front contact at unit rates.
+struct Moved {
+    roll: Vec3<f64>,
+    pitch: Vec3<f64>,
+    yaw: Vec3<f64>,
+    rear: Vec3<f64>,
+}
+
+impl Moved {
+    #[inline(always)]
+    fn new(b: &Geometry, pose: &Pose<f64>) -> Self {
+        let base = pose.base;
+        Self {
+            roll: pose.e1.cross(base),
+            pitch: Vec3::new(base.z, 0.0, -base.x),
+            yaw: pose.k.cross(base),
+            rear: pose.e1.scaled(-b.rR),
         }
     }
-    per_pivot
+}
+
+impl Constraints {
+    #[inline(always)]
+    fn new(b: &Geometry, pose: &Pose<f64>) -> Self {
+        let Moved { roll, pitch, yaw, rear } = Moved::new(b, pose);
+        let more = |a: Vec3<f64>, b: Vec3<f64>, along: Vec3<f64>| along.dot(a).abs() >= along.dot(b).abs();
+        Self::with(b, pose, more(pitch, roll, pose.k), more(yaw, rear, pose.lateral))
+    }
+
+    /// With the pitch rate dependent instead of the roll rate, and the yaw rate instead of the rear wheel's, or not.
+    #[inline(always)]
+    fn with(b: &Geometry, pose: &Pose<f64>, pitch: bool, yaw: bool) -> Self {
+        let by = Moved::new(b, pose);
+        let (across, of_across) = if pitch { (by.pitch, by.roll) } else { (by.roll, by.pitch) };
+        let (along, of_along) = if yaw { (by.yaw, by.rear) } else { (by.rear, by.yaw) };
+        let per = [1.0 / pose.k.dot(across), 1.0 / pose.lateral.dot(along)];
+        Self { pitch, yaw, dependent: [across, along], independent: [of_across, of_along], per }
+    }
+
+    /// All six speeds (or accelerations) from the independent ones, in the order of roll or pitch, steer, rear wheel or yaw; `free` is the
+    /// velocity (or acceleration) of the material point at the contact without the dependent ones.
+    ///
+    /// Solved in sequence: only roll, pitch and steer rate move the point vertically, the front wheel's only along its heading.
+    #[inline(always)]
+    fn speeds(
+        &self,
+        b: &Geometry,
+        pose: &Pose<f64>,
+        [across, steer, along]: [f64; 3],
+        free: Vec3<f64>,
+    ) -> [f64; 6] {
+        let [by_first, by_second] = self.dependent;
+        let first = -(pose.k.dot(free) * self.per[0]);
+        let free = free + by_first.scaled(first);
+        let second = -(pose.lateral.dot(free) * self.per[1]);
+        let front = pose.heading.dot(free + by_second.scaled(second)) * (-1.0 / b.rF);
+        let (roll, pitch) = if self.pitch { (across, first) } else { (first, across) };
+        let (yaw, rear) = if self.yaw { (second, along) } else { (along, second) };
+        [roll, pitch, yaw, steer, rear, front]
+    }
 }
 
 #[inline(always)]
@@ -180,10 +211,43 @@ impl Moves for FullState {
     }
 }
 
-/// Velocity of the material point at the front contact; the constraints make it zero.
-#[inline(always)]
-fn contact_velocity(b: &Geometry, pose: &Pose<f64>, v: &Velocities<f64>) -> Vec3<f64> {
-    v.omega.cross(pose.base) - pose.e1.scaled(v.rear_spin * b.rR)
-        + Vec3::new(-pose.trail.y, pose.trail.x, 0.0).scaled(v.steer)
-        + pose.heading.scaled(v.front_spin * b.rF)
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bicycle::Parameters;
+
+    /// Situation: roll, steer and speeds away from singular configurations.
+    /// Action: the accelerations with each choice of the independent speeds, and those of the three-speed equations.
+    /// Holds: all are the same.
+    #[test]
+    fn every_choice_of_independent_speeds_gives_the_same_accelerations() {
+        let shipped = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters.to_values();
+        let b = Geometry::new(&Parameters::from_values(&shipped));
+        let torques = Torques { roll: 4.0, steer: -3.0 };
+        let mut compared = 0;
+        for (roll, steer, roll_rate, steer_rate) in
+            [(0.3, -0.5, 1.0, -2.0), (-0.9, 0.8, -3.0, 4.0), (0.6, 0.4, 0.2, 9.0), (1.1, -0.7, -2.0, 1.0)]
+        {
+            let pitch = crate::bicycle::pitch_from_upright(&b, roll, steer).unwrap();
+            let upright = State::upright(&b, 4.0);
+            let state = State { roll, steer, pitch, roll_rate, steer_rate, ..upright };
+            let motion = Motion::new(&b, &state);
+            let three = motion.accelerations(&b, &torques);
+            let full = FullState::new(&motion, &state);
+            let pose = full.pose(&b);
+            for (pitch, yaw) in [(true, true), (true, false), (false, true), (false, false)] {
+                let constraints = Constraints::with(&b, &pose, pitch, yaw);
+                let rate = full.rate_under(&b, &pose, &constraints, &torques).unwrap().speeds;
+                let pairs = [(rate[0], three.roll), (rate[3], three.steer), (rate[4], three.rear_wheel)];
+                for (six, three) in pairs {
+                    assert!(
+                        (six - three).abs() < 1e-9 * (1.0 + three.abs()),
+                        "{six} for {three}: {pitch} {yaw}"
+                    );
+                }
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 16);
+    }
 }
