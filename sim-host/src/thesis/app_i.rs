@@ -7,7 +7,7 @@ use super::published::{Cell, GainRow, Heights, cells, height_cell, published};
 use super::study::Study;
 use crate::basin::{Axis as Disturbed, Column, Method, Search, border, column};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
-use crate::ride::{Conditions, rides, traced};
+use crate::ride::{Conditions, Effort, Ride, Start, rides, side_by_side};
 use crate::rider::Gains;
 use rayon::prelude::*;
 
@@ -198,15 +198,16 @@ fn tried(study: &Study, sets: &[Set], set: &Set, value: Value) -> Value {
 
 /// The first multiple of [`GRID`] at which a ride exceeds `degrees` of roll or steer, or falls \[rad/s\].
 fn first_beyond(conditions: &Conditions, speed: f64, degrees: f64) -> f64 {
-    let beyond = |rate: f64| {
-        let fell = rides(conditions, &[disturbed(speed, rate)])[0].fell();
-        let largest = || {
-            let (_, trace) = traced(conditions, disturbed(speed, rate));
-            trace.iter().map(|p| p.roll.abs().max(p.steer.abs())).fold(0.0, f64::max)
-        };
-        fell || largest() > degrees.to_radians()
+    let multiples: Vec<f64> = (1..150).map(|i| multiple(f64::from(i))).collect();
+    let beyond = |ride: &Ride| {
+        let Effort { peak_roll_rad, peak_steer_rad, .. } = ride.effort;
+        ride.fell() || peak_roll_rad.max(peak_steer_rad) > degrees.to_radians()
     };
-    (1..150).map(|i| multiple(f64::from(i))).find(|&rate| beyond(rate)).unwrap_or(f64::NAN)
+    let first = multiples.chunks(side_by_side()).find_map(|some| {
+        let starts: Vec<Start> = some.iter().map(|&rate| disturbed(speed, rate)).collect();
+        rides(conditions, &starts).iter().position(beyond).map(|first| some[first])
+    });
+    first.unwrap_or(f64::NAN)
 }
 
 /// Figure I.1: the heights over the runs' speeds.

@@ -54,7 +54,8 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
         r.start() + (r.end() - r.start()) * (f64::from(i) + 0.5) / f64::from(CELLS)
     };
     let cells = (0..CELLS * CELLS).map(|i| [at(&bounds.omega, i / CELLS), at(&bounds.beta, i % CELLS)]);
-    let start = cells.min_by(|p, q| part(p).total_cmp(&part(q))).unwrap_or_default();
+    let valued = cells.map(|p| (p, part(&p)));
+    let start = valued.min_by(|p, q| p.1.total_cmp(&q.1)).map_or([0.0; 2], |(p, _)| p);
     let found = whole(&minimum(start, part));
     fitted(samples, -found[3], found[2], |t| damped(&found, t))
 }
