@@ -65,7 +65,7 @@ pub fn pitch_from_upright(b: &Geometry, roll: f64, steer: f64) -> Option<f64> {
     if !(roll.abs() <= PI && steer.abs() <= PI) {
         return None;
     }
-    let steps = (roll.abs().max(steer.abs()) / 0.01).ceil().max(1.0);
+    let steps = (roll.abs().max(steer.abs()) / 0.04).ceil().max(1.0);
     let mut pitch = 0.0;
     for i in 1..=steps as usize {
         let part = i as f64 / steps;

@@ -32,23 +32,29 @@ struct LaneBatch<'a, 'p, const N: usize> {
     rider_nm: Lanes<N>,
     /// The quantities of [`stiffness`] of each lane.
     stiffness: [Lanes<N>; 4],
+    /// Whether sensors or motor are not exact, or the controller reads more of them than roll rate and one speed.
+    needs_hardware: bool,
     /// Record of lane 0.
     trace: Option<&'a mut Vec<TracePoint>>,
 }
 
 impl<const N: usize> LaneBatch<'_, '_, N> {
-    /// Control instant at the start of a step: sensors, controllers, new torques.
-    fn control(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
-        self.stiffness = stiffness(b, motion);
+    /// Control instant at the start of a step: sensors, controllers, new torques, from the exact roll rates and speeds; sensors and trace
+    /// need the whole motion.
+    fn control(
+        &mut self,
+        b: &Geometry,
+        (rate, speed): (Lanes<N>, Lanes<N>),
+        motion: Option<&Motion<Lanes<N>>>,
+    ) {
         if let Some(riders) = &self.riders {
             self.rider_nm = riders.rider_state.at.torque;
         }
-        let (rate, speed) = readings(self.conditions, &motion.actual, self.initial);
         for (lane, ride) in self.lanes.iter_mut().enumerate() {
             let Some(ride) = ride else { continue };
             // Near singular configurations only the six-speed state is accurate.
-            let (measured, output) = match (ride.hardware.take(), &self.conditions.assist) {
-                (Some(mut hardware), Assist::Firmware(plan)) => {
+            let (measured, output) = match (ride.hardware.take(), &self.conditions.assist, motion) {
+                (Some(mut hardware), Assist::Firmware(plan), Some(motion)) => {
                     let at = match &ride.full {
                         Some(full) => Frame::new(&full.pose(b), &full.velocities(b), full.angles[2]),
                         None => lane_frame(motion, lane),
@@ -75,7 +81,7 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
                     (measured, output)
                 }
             };
-            if let (0, Some(trace)) = (lane, &mut self.trace) {
+            if let (0, Some(trace), Some(motion)) = (lane, &mut self.trace, motion) {
                 // Rounded to whole nanoseconds: the nearest number to 5.999 s, not 5999 times the nearest to 1 ms.
                 let t = (f64::from(ride.step) * self.conditions.step_s * 1e9).round() / 1e9;
                 let steer_torques =
@@ -115,9 +121,15 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
 impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
     #[inline(always)]
     fn begin_step(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
-        // A copy: what no other function refers to can stay in registers.
-        let seen = Aligned(*motion);
-        self.control(b, &seen.0);
+        self.stiffness = stiffness(b, motion);
+        let exact = readings(self.conditions, &motion.actual, self.initial);
+        if self.needs_hardware || self.trace.is_some() {
+            // A copy: what no other function refers to can stay in registers.
+            let seen = Aligned(*motion);
+            self.control(b, exact, Some(&seen.0));
+        } else {
+            self.control(b, exact, None);
+        }
     }
 
     #[inline(always)]
@@ -175,11 +187,11 @@ pub(super) fn run<const N: usize>(
         riders: conditions.rider.as_ref().map(|rider| RiderLanes::new(rider, rider.delay_steps(h))),
         rider_nm: still,
         stiffness: [still; 4],
+        needs_hardware: hardware::needed(conditions),
         trace,
     };
     let mut done = Vec::with_capacity(starts.len());
     let mut warm_start = WarmStart::default();
-    let needs_hardware = hardware::needed(conditions);
     loop {
         for lane in 0..N {
             if batch.lanes[lane].is_some() {
@@ -199,7 +211,7 @@ pub(super) fn run<const N: usize>(
                 if let Assist::Firmware(plan) = &conditions.assist {
                     backend.begin(plan, &start);
                 }
-                let warm = warm_start.at(conditions, (&batch.plant, needs_hardware), backend, &start);
+                let warm = warm_start.at(conditions, (&batch.plant, batch.needs_hardware), backend, &start);
                 let (ready, hardware) = warm.map_or((None, None), |warm| (Some(warm.ready), warm.hardware));
                 backend.disturb();
                 RideRecorder::new(conditions, index, start, ready, hardware)
