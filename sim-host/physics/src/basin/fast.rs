@@ -7,7 +7,7 @@
 use super::plain::{narrow, plain};
 use super::scan::{Border, Edge, SECTIONS, column, edges, fell, rates};
 use super::{Column, ScanPoint, Search, Work};
-use crate::ride::{Conditions, Outcome, Quick, Ride, Start, rides};
+use crate::ride::{Conditions, Outcome, Quick, QuickRide, Ride, Start, rides};
 use std::convert::Infallible;
 
 /// Distance from a border up to which the scan's rides are ridden again in finer steps, in tolerances: there a ride is most
@@ -26,6 +26,8 @@ struct Line<'a, L> {
     edges: Vec<Edge>,
     /// The same, before the last round of narrowing.
     outer: Vec<Edge>,
+    /// The disturbances of the scan from which a ride does not fall, while only an exact one decides whether it recovers.
+    open: Vec<f64>,
     /// Whether an exact ride contradicts the scan.
     contradicted: bool,
     work: Work,
@@ -96,10 +98,10 @@ pub(super) fn borders<L: Fn(f64) -> Start>(
 ) -> Vec<Column> {
     let rates = rates(search);
     let mut lines: Vec<Line<L>> = lines.iter().map(Line::new).collect();
-    let mut scans: Vec<Vec<Outcome>> = vec![Vec::new(); lines.len()];
+    let mut scans: Vec<Vec<Option<Outcome>>> = vec![Vec::new(); lines.len()];
     for group in rates.chunks(SECTIONS) {
         let on: Vec<usize> =
-            (0..lines.len()).filter(|&i| !scans[i].iter().any(|outcome| fell(*outcome))).collect();
+            (0..lines.len()).filter(|&i| !scans[i].iter().any(|outcome| falls(*outcome))).collect();
         let wanted: Vec<(usize, f64)> =
             on.iter().flat_map(|&line| group.iter().map(move |&rate| (line, rate))).collect();
         let done = outcomes(conditions, quick, &mut lines, &wanted);
@@ -126,6 +128,7 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
             wide: Vec::new(),
             edges: Vec::new(),
             outer: Vec::new(),
+            open: Vec::new(),
             contradicted: false,
             work: Work::default(),
         }
@@ -164,32 +167,44 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
     }
 
     /// Stores the outcomes of a scan, in the order of the rates.
-    fn scanned(&mut self, rates: &[f64], outcomes: &[Outcome]) {
-        self.scan = rates.iter().zip(outcomes).map(|(&rate, &outcome)| ScanPoint { rate, outcome }).collect();
+    fn scanned(&mut self, rates: &[f64], outcomes: &[Option<Outcome>]) {
+        let found = || rates.iter().copied().zip(outcomes.iter().copied());
+        self.open = found().filter(|(_, outcome)| outcome.is_none()).map(|(rate, _)| rate).collect();
+        self.scan = found()
+            .map(|(rate, outcome)| ScanPoint { rate, outcome: outcome.unwrap_or(Outcome::Undecided) })
+            .collect();
         self.wide = edges(&self.scan);
         self.edges = self.wide.clone();
         self.outer = self.wide.clone();
     }
 }
 
+/// Whether a ride with this outcome fell; `None` as in [`outcomes`].
+fn falls(outcome: Option<Outcome>) -> bool {
+    outcome.is_some_and(fell)
+}
+
 /// The outcomes of rides, each given by its line and disturbance \[rad/s\]: quick ones, and exact ones where those decide
-/// nothing.
+/// nothing. `None` of a ride that does not fall, but is too close to the limit between recovered and undecided.
 fn outcomes<L: Fn(f64) -> Start>(
     conditions: &Conditions,
     quick: &Quick,
     lines: &mut [Line<L>],
     wanted: &[(usize, f64)],
-) -> Vec<Outcome> {
+) -> Vec<Option<Outcome>> {
     let starts: Vec<Start> = wanted.iter().map(|&(line, rate)| (lines[line].start)(rate)).collect();
     let done = quick.rides(&starts);
     for (ride, &(line, _)) in done.iter().zip(wanted) {
         lines[line].work.add_steps(ride.steps);
     }
-    let open: Vec<usize> = (0..done.len()).filter(|&i| done[i].outcome.is_none()).collect();
-    let again = exact(conditions, lines, &open.iter().map(|&i| wanted[i]).collect::<Vec<_>>());
-    let mut again = again.into_iter();
-    let decided = done.iter().map(|ride| ride.outcome.or_else(|| again.next().map(|ride| ride.outcome)));
-    decided.map(|outcome| outcome.unwrap_or(Outcome::Undecided)).collect()
+    let unknown = |ride: &QuickRide| ride.outcome.is_none() && !ride.upright;
+    let open = done.iter().zip(wanted).filter(|(ride, _)| unknown(ride));
+    let mut again = exact(conditions, lines, &open.map(|(_, at)| *at).collect::<Vec<_>>()).into_iter();
+    let decided = |ride: &QuickRide| match unknown(ride) {
+        true => again.next().map(|ride| ride.outcome),
+        false => ride.outcome,
+    };
+    done.iter().map(decided).collect()
 }
 
 /// Exact rides, each given by its line and disturbance \[rad/s\]; the longest begin first, so that short ones fill the lanes at
@@ -232,14 +247,14 @@ fn confirmed<L: Fn(f64) -> Start>(
         }
         let outcomes = outcomes(conditions, &fine, &mut lines, &wanted);
         for (&(line, rate), &outcome) in wanted.iter().zip(&outcomes) {
-            lines[line].narrowed.push(ScanPoint { rate, outcome });
+            lines[line].narrowed.extend(outcome.map(|outcome| ScanPoint { rate, outcome }));
         }
         let mut sections = wanted.chunks(SECTIONS).zip(outcomes.chunks(SECTIONS));
         let edges = lines.iter_mut().flat_map(|line| line.edges.iter_mut().zip(&mut line.outer));
         for (edge, outer) in edges.filter(|(edge, _)| !edge.narrow(search.tolerance)) {
             let Some((rates, outcomes)) = sections.next() else { break };
             *outer = *edge;
-            let first = outcomes.iter().position(|outcome| fell(*outcome));
+            let first = outcomes.iter().position(|outcome| falls(*outcome));
             if let Some(first) = first {
                 edge.fell = rates[first].1;
             }
@@ -259,18 +274,23 @@ fn confirmed<L: Fn(f64) -> Start>(
     }
     let near: Vec<(usize, f64)> =
         lines.iter().enumerate().flat_map(|(i, line)| line.near(i, search)).collect();
-    let mut contradicting = Vec::new();
+    // The points of the scan that only exact rides decide.
+    let mut doubtful = Vec::new();
     for (&(line, rate), outcome) in near.iter().zip(outcomes(conditions, &fine, &mut lines, &near)) {
-        match lines[line].scanned_fall(rate) == fell(outcome) {
-            true => lines[line].corrected(rate, outcome),
-            false => contradicting.push((line, rate)),
+        match outcome.filter(|outcome| lines[line].scanned_fall(rate) == fell(*outcome)) {
+            Some(outcome) => lines[line].corrected(rate, outcome),
+            None => doubtful.push((line, rate)),
         }
     }
+    for (i, line) in lines.iter().enumerate() {
+        let known = |rate: &&f64| !doubtful.contains(&(i, **rate));
+        doubtful.extend(line.open.iter().filter(known).map(|rate| (i, *rate)).collect::<Vec<_>>());
+    }
     // All exact rides at once, so that they fill the lanes.
-    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fallen).chain(&contradicting).copied().collect();
+    let wanted: Vec<(usize, f64)> = safe.iter().chain(&fallen).chain(&doubtful).copied().collect();
     let mut safe_rides = exact(conditions, &mut lines, &wanted);
     let mut fallen_rides = safe_rides.split_off(safe.len());
-    for (&(line, rate), ride) in contradicting.iter().zip(fallen_rides.split_off(fallen.len())) {
+    for (&(line, rate), ride) in doubtful.iter().zip(fallen_rides.split_off(fallen.len())) {
         lines[line].corrected(rate, ride.outcome);
     }
     let (mut safe_rides, mut fallen_rides) = (safe_rides.into_iter(), fallen_rides.into_iter());

@@ -1,6 +1,6 @@
 //! Decides a ride early: the rest of a small motion by the linear model at the present speed.
 //!
-//! Within [`LARGEST_RAD`] and [`LARGEST_RAD_S`] the nonlinear terms change a motion by less than 1 %; the outcome is
+//! Within [`LARGEST_RAD`] and [`LARGEST_RAD_S`] the nonlinear terms change a motion by about 1 %; the outcome is
 //! decided only if the late amplitudes differ from the limit by the factor [`CLEAR`].
 
 use super::controller::Linear;
@@ -13,9 +13,9 @@ use crate::rider::{Rider, RiderState, SignalHistory};
 use control::Law;
 
 /// Largest roll and steer \[rad\].
-const LARGEST_RAD: f64 = 0.05;
+const LARGEST_RAD: f64 = 0.1;
 /// Largest rates of roll and steer \[rad/s\].
-const LARGEST_RAD_S: f64 = 0.4;
+const LARGEST_RAD_S: f64 = 0.8;
 /// Largest heading \[rad\], of which the lateral path is a sine.
 const LARGEST_HEADING_RAD: f64 = 0.2;
 /// Factor between a late amplitude and the limit that decides.

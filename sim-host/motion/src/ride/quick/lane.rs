@@ -48,6 +48,11 @@ impl Lane {
         self.passed_s.is_some_and(|passed_s| self.t - passed_s > SENSITIVE_S)
     }
 
+    /// Whether the time limit is reached without a fall.
+    pub(super) fn over(&self, conditions: &Conditions) -> bool {
+        self.t >= conditions.time_limit_s - 1e-9
+    }
+
     /// Records a step of `h` seconds; the outcome if the ride has ended, or `Some(None)` if it is not decided by the factor
     /// `clear`.
     pub(super) fn book(
@@ -73,7 +78,7 @@ impl Lane {
             let from = (1.0 - since_s / h).max(0.0);
             self.late = larger(self.late, largest_angles((before, after), h, from));
         }
-        let over = self.t >= conditions.time_limit_s - 1e-9;
+        let over = self.over(conditions);
         if let Some(flat) = conditions.fall.flat {
             let beyond = angles[0] > flat.roll_rad;
             if beyond && self.flat_s.is_none() {

@@ -76,6 +76,8 @@ const CLEAR_ROUGH: [f64; 2] = [1.15, 1.03];
 pub struct QuickRide {
     /// The outcome; `None` if it is too close to a limit, or the motion too fast, for this method.
     pub outcome: Option<Outcome>,
+    /// Whether it did not fall within the time limit, while it is too close to the limit between recovered and undecided.
+    pub upright: bool,
     /// Steps taken.
     pub steps: u32,
     /// Whether the motion went on for long after a singular configuration.
@@ -186,7 +188,8 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     let b = &conditions.bicycle;
     let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
-    let mut done = vec![QuickRide { outcome: None, steps: 0, sensitive: false }; starts.len()];
+    let mut done =
+        vec![QuickRide { outcome: None, upright: false, steps: 0, sensitive: false }; starts.len()];
     let mut waiting = starts.iter().copied().enumerate();
     let still = Lanes([0.0; N]);
     let mut state = Aligned(State::upright(b, still));
@@ -342,7 +345,9 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 ended => ended,
             };
             if let Some(outcome) = ended {
-                done[ride.index] = QuickRide { outcome, steps: ride.steps, sensitive: ride.sensitive() };
+                let upright = outcome.is_none() && ride.over(conditions);
+                let (steps, sensitive) = (ride.steps, ride.sensitive());
+                done[ride.index] = QuickRide { outcome, upright, steps, sensitive };
                 *slot = None;
             }
         }
