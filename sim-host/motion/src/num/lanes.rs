@@ -1,9 +1,10 @@
-//! Several numbers side by side, in the vector registers of the instruction set that has as many lanes.
+//! Several numbers side by side, in the registers of the instruction set that has as many lanes.
 //!
 //! | lanes | registers of a number | instructions |
 //! | ---: | --- | --- |
 //! | 16 | 2 of 8 | AVX-512 |
 //! | 8 | 2 of 4 | AVX2 |
+//! | 1 | 1 of 1 | of every processor |
 //! | any other | as the compiler finds | of every processor of the target |
 //!
 //! Lanes of the first two rows are used only in [`crate::ride`]'s functions for these instructions, which are called where the
@@ -12,7 +13,8 @@
 use super::Scalar;
 use super::exp::exp;
 #[cfg(target_arch = "x86_64")]
-use super::registers::{Avx2, Avx512, Registers};
+use super::registers::{Avx2, Avx512};
+use super::registers::{One, Registers};
 use super::sincos::{by_quadrant, reduced};
 use control::law::real::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -38,15 +40,23 @@ impl<const N: usize> Lanes<N> {
         }
         out
     }
+
+    #[inline(always)]
+    fn by_quadrant<R: Registers>(s: Self, c: Self, quadrant: Self) -> (Self, Self) {
+        let (s, c) = R::by_quadrant(R::load(s.0), R::load(c.0), R::load(quadrant.0));
+        (Self(s.numbers()), Self(c.numbers()))
+    }
 }
 
 /// Returns the result in registers if there are such of `N` lanes.
 macro_rules! in_registers {
     ($operation:ident, $($operand:expr),+) => {
-        #[cfg(target_arch = "x86_64")]
         match N {
+            #[cfg(target_arch = "x86_64")]
             16 => return Self(Avx512::$operation($(Avx512::load($operand.0)),+).numbers()),
+            #[cfg(target_arch = "x86_64")]
             8 => return Self(Avx2::$operation($(Avx2::load($operand.0)),+).numbers()),
+            1 => return Self(One::$operation($(One::load($operand.0)),+).numbers()),
             _ => (),
         }
     };
@@ -101,10 +111,12 @@ impl<const N: usize> Neg for Lanes<N> {
 impl<const N: usize> Scalar for Lanes<N> {
     #[inline(always)]
     fn constant(value: f64) -> Self {
-        #[cfg(target_arch = "x86_64")]
         match N {
+            #[cfg(target_arch = "x86_64")]
             16 => return Self(Avx512::constant(value).numbers()),
+            #[cfg(target_arch = "x86_64")]
             8 => return Self(Avx2::constant(value).numbers()),
+            1 => return Self(One::constant(value).numbers()),
             _ => (),
         }
         Self([value; N])
@@ -117,18 +129,12 @@ impl<const N: usize> Scalar for Lanes<N> {
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
         let (mut s, mut c, quadrant) = reduced(self);
-        #[cfg(target_arch = "x86_64")]
         match N {
-            16 => {
-                let (s, c) = (Avx512::load(s.0), Avx512::load(c.0));
-                let (s, c) = Avx512::by_quadrant(s, c, Avx512::load(quadrant.0));
-                return (Self(s.numbers()), Self(c.numbers()));
-            }
-            8 => {
-                let (s, c) = (Avx2::load(s.0), Avx2::load(c.0));
-                let (s, c) = Avx2::by_quadrant(s, c, Avx2::load(quadrant.0));
-                return (Self(s.numbers()), Self(c.numbers()));
-            }
+            #[cfg(target_arch = "x86_64")]
+            16 => return Self::by_quadrant::<Avx512>(s, c, quadrant),
+            #[cfg(target_arch = "x86_64")]
+            8 => return Self::by_quadrant::<Avx2>(s, c, quadrant),
+            1 => return Self::by_quadrant::<One>(s, c, quadrant),
             _ => (),
         }
         for i in 0..N {

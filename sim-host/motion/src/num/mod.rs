@@ -9,7 +9,6 @@ mod exp;
 mod lanes;
 mod moves;
 mod random_stream;
-#[cfg(target_arch = "x86_64")]
 mod registers;
 mod sincos;
 mod vector;

@@ -1,12 +1,14 @@
-//! Vector registers: the arithmetic of several numbers in one instruction.
+//! Registers: the arithmetic of one number, or of several in one instruction.
 #![allow(unsafe_code)]
 
+use super::sincos::by_quadrant;
+#[cfg(target_arch = "x86_64")]
 use std::arch::x86_64::*;
 
-/// Numbers in vector registers. Every operation rounds each number as that of an `f64` does.
+/// Numbers in registers. Every operation rounds each number as that of an `f64` does.
 ///
-/// The functions must be called only on a processor that has the instructions, and are fast only in a function that is compiled for
-/// them, into which they are inlined.
+/// The functions of vector registers must be called only on a processor that has the instructions, and are fast only in a function
+/// that is compiled for them, into which they are inlined.
 pub(in crate::num) trait Registers: Copy {
     /// The same number in every lane.
     fn constant(value: f64) -> Self;
@@ -47,7 +49,48 @@ union Bits<R: Copy, const N: usize> {
     registers: R,
 }
 
+/// One number. A loop over one lane does the same, but some thousand loops are a third of the compiler's time.
+#[derive(Clone, Copy)]
+pub(in crate::num) struct One(f64);
+
+impl Registers for One {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self(value)
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self(self.0 * other.0)
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(self.0 / other.0)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt())
+    }
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+    #[inline(always)]
+    fn by_quadrant(s: Self, c: Self, quadrant: Self) -> (Self, Self) {
+        let (sin, cos) = by_quadrant(s.0, c.0, quadrant.0.to_bits());
+        (Self(sin), Self(cos))
+    }
+}
+
 /// Two registers: enough independent operations to hide part of the latencies.
+#[cfg(target_arch = "x86_64")]
 macro_rules! two_registers {
     (
         $name:ident: $number:ident, $constant:ident, $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident,
@@ -84,38 +127,46 @@ macro_rules! two_registers {
             }
             #[inline(always)]
             fn neg(self) -> Self {
-                let mut out = self;
-                for x in &mut out.0 {
-                    *x = unsafe { $of_bits($xor($bits(*x), $integers(i64::MIN))) };
-                }
-                out
+                Self(unsafe {
+                    [
+                        $of_bits($xor($bits(self.0[0]), $integers(i64::MIN))),
+                        $of_bits($xor($bits(self.0[1]), $integers(i64::MIN))),
+                    ]
+                })
             }
             #[inline(always)]
             fn by_quadrant(s: Self, c: Self, quadrant: Self) -> (Self, Self) {
-                let (mut sin, mut cos) = (s, c);
-                for i in 0..2 {
-                    unsafe {
-                        let (s, c, q) = ($bits(s.0[i]), $bits(c.0[i]), $bits(quadrant.0[i]));
-                        let swap = $minus($integers(0), $and(q, $integers(1)));
-                        let (swapped_s, swapped_c) =
-                            ($or($and_not(swap, s), $and(swap, c)), $or($and_not(swap, c), $and(swap, s)));
-                        let sin_sign = $left::<62>($and(q, $integers(2)));
-                        let cos_sign = $left::<62>($and($xor(q, $left::<1>(q)), $integers(2)));
-                        sin.0[i] = $of_bits($xor(swapped_s, sin_sign));
-                        cos.0[i] = $of_bits($xor(swapped_c, cos_sign));
-                    }
+                let (sin_0, cos_0) = Self::one_by_quadrant(s.0[0], c.0[0], quadrant.0[0]);
+                let (sin_1, cos_1) = Self::one_by_quadrant(s.0[1], c.0[1], quadrant.0[1]);
+                (Self([sin_0, sin_1]), Self([cos_0, cos_1]))
+            }
+        }
+
+        impl $name {
+            /// Of one register. No closure, which would be compiled for every processor.
+            #[inline(always)]
+            fn one_by_quadrant(s: $number, c: $number, quadrant: $number) -> ($number, $number) {
+                unsafe {
+                    let (s, c, q) = ($bits(s), $bits(c), $bits(quadrant));
+                    let swap = $minus($integers(0), $and(q, $integers(1)));
+                    let (swapped_s, swapped_c) =
+                        ($or($and_not(swap, s), $and(swap, c)), $or($and_not(swap, c), $and(swap, s)));
+                    let sin_sign = $left::<62>($and(q, $integers(2)));
+                    let cos_sign = $left::<62>($and($xor(q, $left::<1>(q)), $integers(2)));
+                    ($of_bits($xor(swapped_s, sin_sign)), $of_bits($xor(swapped_c, cos_sign)))
                 }
-                (sin, cos)
             }
         }
     };
 }
 
+#[cfg(target_arch = "x86_64")]
 two_registers! {
     Avx2: __m256d, _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
     _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
     _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
 }
+#[cfg(target_arch = "x86_64")]
 two_registers! {
     Avx512: __m512d, _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
     _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_andnot_si512
