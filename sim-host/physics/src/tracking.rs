@@ -70,7 +70,7 @@ pub fn gains(p: &Parameters, v: f64, law_gain: f64, weights: &Weights) -> RowSVe
     cost[(5, 5)] = weights.lateral * PERIOD_S;
     cost[(6, 6)] = weights.integral * PERIOD_S;
     for _ in 0..40 {
-        let Some(w) = (Square::identity() + reach * cost).try_inverse() else { break };
+        let Some(w) = (Square::identity() + reach * cost).lu().try_inverse() else { break };
         let (next_reach, next_cost) =
             (reach + turn * w * reach * turn.transpose(), cost + turn.transpose() * cost * w * turn);
         turn = turn * w * turn;

@@ -47,7 +47,7 @@ fn derivatives(at: f64) -> SMatrix<f64, NODES, NODES> {
         }
     }
     // The nodes differ, so their powers are independent.
-    of_coefficients * powers.try_inverse().unwrap_or_default()
+    of_coefficients * powers.lu().try_inverse().unwrap_or_default()
 }
 
 /// State after `duration_s` with a neural signal that takes its polynomial from the nodes at column `nodes`, starting at
