@@ -26,6 +26,13 @@ impl SyntaxError {
         Self { key, ..Self::new(error.inner()) }
     }
 
+    /// The message about a key, without the line.
+    fn without_line(error: &serde_path_to_error::Error<toml::de::Error>) -> Self {
+        let mut message = error.inner().clone();
+        message.set_input(None);
+        Self { key: Self::at(error).key, ..Self::new(&message) }
+    }
+
     /// The wrong or unknown key, with dots, if one is to blame.
     pub fn key(&self) -> Option<&str> {
         self.key.as_deref()
@@ -84,7 +91,10 @@ impl Scenario {
             None if of_result => return wrong("this result has no `scenario`"),
             None => Value::Table(table),
         };
-        serde_path_to_error::deserialize(own).map_err(|e| SyntaxError::at(&e))
+        // Through the text, so that every type of a scenario is read by one parser: a second is a twentieth of the build.
+        let text = toml::to_string(&own).map_err(|e| SyntaxError::new(&e))?;
+        let file = toml::Deserializer::parse(&text).map_err(|e| SyntaxError::new(&e))?;
+        serde_path_to_error::deserialize(file).map_err(|e| SyntaxError::without_line(&e))
     }
 
     /// The scenario as a TOML file.
