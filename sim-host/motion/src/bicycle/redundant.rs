@@ -77,7 +77,7 @@ impl FullState {
         let inertia = Inertia::new(b, pose);
         let (bias, free) = super::bias::bias(b, pose, &actual, &inertia, None);
         let steer = Vec3::new(-pose.trail.y, pose.trail.x, 0.0);
-        let [across, along] = constraints.independent;
+        let [across, along] = constraints.by_independent;
         let closed = |units: [f64; 3], free| velocities(pose, &constraints.speeds(b, pose, units, free));
         let u = closed([1.0, 0.0, 0.0], across);
         let v = closed([0.0, 1.0, 0.0], steer);
@@ -115,46 +115,31 @@ impl FullState {
     }
 }
 
+/// Indices in [`FullState::speeds`].
+const ROLL: usize = 0;
+const PITCH: usize = 1;
+const YAW: usize = 2;
+const STEER: usize = 3;
+const REAR: usize = 4;
+const FRONT: usize = 5;
+
 /// The rolling constraints at the front contact, solved for roll or pitch rate, yaw or rear wheel rate, and the front wheel's rate.
 /// Of either pair that speed is dependent which moves the contact more: no divisor is small in both singular configurations.
 struct Constraints {
-    /// Whether the pitch rate is dependent and the roll rate independent, or the reverse.
-    pitch: bool,
-    /// Whether the yaw rate is dependent and the rear wheel's rate independent, or the reverse.
-    yaw: bool,
-    /// Velocity of the material point at the front contact per unit of the two dependent speeds.
-    dependent: [Vec3<f64>; 2],
-    /// The same of the two independent speeds.
-    independent: [Vec3<f64>; 2],
+    /// The two dependent speeds, and the independent one of either pair.
+    dependent: [usize; 2],
+    independent: [usize; 2],
+    /// Velocity of the material point at the front contact per unit of the dependent speeds, and of the independent ones.
+    by_dependent: [Vec3<f64>; 2],
+    by_independent: [Vec3<f64>; 2],
     /// One over the vertical and lateral components of the dependent ones.
     per: [f64; 2],
-}
-
-/// Velocities of the material point at the front contact at unit rates.
-struct Moved {
-    roll: Vec3<f64>,
-    pitch: Vec3<f64>,
-    yaw: Vec3<f64>,
-    rear: Vec3<f64>,
-}
-
-impl Moved {
-    #[inline(always)]
-    fn new(b: &Geometry, pose: &Pose<f64>) -> Self {
-        let base = pose.base;
-        Self {
-            roll: pose.e1.cross(base),
-            pitch: Vec3::new(base.z, 0.0, -base.x),
-            yaw: pose.k.cross(base),
-            rear: pose.e1.scaled(-b.rR),
-        }
-    }
 }
 
 impl Constraints {
     #[inline(always)]
     fn new(b: &Geometry, pose: &Pose<f64>) -> Self {
-        let Moved { roll, pitch, yaw, rear } = Moved::new(b, pose);
+        let [roll, pitch, yaw, rear] = moved(b, pose);
         let more = |a: Vec3<f64>, b: Vec3<f64>, along: Vec3<f64>| along.dot(a).abs() >= along.dot(b).abs();
         Self::with(b, pose, more(pitch, roll, pose.k), more(yaw, rear, pose.lateral))
     }
@@ -162,15 +147,22 @@ impl Constraints {
     /// With the pitch rate dependent instead of the roll rate, and the yaw rate instead of the rear wheel's, or not.
     #[inline(always)]
     fn with(b: &Geometry, pose: &Pose<f64>, pitch: bool, yaw: bool) -> Self {
-        let by = Moved::new(b, pose);
-        let (across, of_across) = if pitch { (by.pitch, by.roll) } else { (by.roll, by.pitch) };
-        let (along, of_along) = if yaw { (by.yaw, by.rear) } else { (by.rear, by.yaw) };
-        let per = [1.0 / pose.k.dot(across), 1.0 / pose.lateral.dot(along)];
-        Self { pitch, yaw, dependent: [across, along], independent: [of_across, of_along], per }
+        let [by_roll, by_pitch, by_yaw, by_rear] = moved(b, pose);
+        let (roll, pitching) = ((ROLL, by_roll), (PITCH, by_pitch));
+        let (yawing, rear) = ((YAW, by_yaw), (REAR, by_rear));
+        let (first, across) = if pitch { (pitching, roll) } else { (roll, pitching) };
+        let (second, along) = if yaw { (yawing, rear) } else { (rear, yawing) };
+        Self {
+            dependent: [first.0, second.0],
+            independent: [across.0, along.0],
+            by_dependent: [first.1, second.1],
+            by_independent: [across.1, along.1],
+            per: [1.0 / pose.k.dot(first.1), 1.0 / pose.lateral.dot(second.1)],
+        }
     }
 
-    /// All six speeds (or accelerations) from the independent ones, in the order of roll or pitch, steer, rear wheel or yaw; `free` is the
-    /// velocity (or acceleration) of the material point at the contact without the dependent ones.
+    /// All six speeds (or accelerations) from the independent ones, in the order of roll or pitch, steer, rear wheel or yaw; `free` is
+    /// the velocity (or acceleration) of the material point at the contact without the dependent ones.
     ///
     /// Solved in sequence: only roll, pitch and steer rate move the point vertically, the front wheel's only along its heading.
     #[inline(always)]
@@ -181,15 +173,23 @@ impl Constraints {
         [across, steer, along]: [f64; 3],
         free: Vec3<f64>,
     ) -> [f64; 6] {
-        let [by_first, by_second] = self.dependent;
         let first = -(pose.k.dot(free) * self.per[0]);
-        let free = free + by_first.scaled(first);
+        let free = free + self.by_dependent[0].scaled(first);
         let second = -(pose.lateral.dot(free) * self.per[1]);
-        let front = pose.heading.dot(free + by_second.scaled(second)) * (-1.0 / b.rF);
-        let (roll, pitch) = if self.pitch { (across, first) } else { (first, across) };
-        let (yaw, rear) = if self.yaw { (second, along) } else { (along, second) };
-        [roll, pitch, yaw, steer, rear, front]
+        let free = free + self.by_dependent[1].scaled(second);
+        let mut speeds = [0.0; 6];
+        (speeds[self.dependent[0]], speeds[self.dependent[1]]) = (first, second);
+        (speeds[self.independent[0]], speeds[self.independent[1]]) = (across, along);
+        (speeds[STEER], speeds[FRONT]) = (steer, pose.heading.dot(free) * (-1.0 / b.rF));
+        speeds
     }
+}
+
+/// Velocities of the material point at the front contact at unit rates of roll, pitch, yaw and rear wheel.
+#[inline(always)]
+fn moved(b: &Geometry, pose: &Pose<f64>) -> [Vec3<f64>; 4] {
+    let base = pose.base;
+    [pose.e1.cross(base), Vec3::new(base.z, 0.0, -base.x), pose.k.cross(base), pose.e1.scaled(-b.rR)]
 }
 
 #[inline(always)]
