@@ -91,7 +91,7 @@ impl Scenario {
             None if of_result => return wrong("this result has no `scenario`"),
             None => Value::Table(table),
         };
-        // Through the text, so that every type of a scenario is read by one parser: a second is a twentieth of the build.
+        // Through the text, so that every type of a scenario is read by one parser: a second is 4 % of the code of this crate.
         let text = toml::to_string(&own).map_err(|e| SyntaxError::new(&e))?;
         let file = toml::Deserializer::parse(&text).map_err(|e| SyntaxError::new(&e))?;
         serde_path_to_error::deserialize(file).map_err(|e| SyntaxError::without_line(&e))
