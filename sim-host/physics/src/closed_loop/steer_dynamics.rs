@@ -8,8 +8,8 @@
 //! where the rest are roll acceleration, roll rate times speed, roll angle, steer angle, steer angle times speed squared and
 //! a constant, each with a free coefficient. Where a controller made the torque from these same signals, the equation has a
 //! second solution: the controller's law, with no inertia. Two regressions show which one the recording holds. That of the
-//! torque on the motion is drawn to the law and to a small inertia; that of the acceleration on the torque and the other
-//! terms is not explained by the torque, and drawn to a large one. If both agree, the torque was rich enough to move the
+//! torque on the motion is biased towards the law and a small inertia; that of the acceleration on the torque and the other
+//! terms is not explained by the torque, and biased towards a large one. If both agree, the torque was rich enough to move the
 //! steer against its inertia; if not, the inertia is not identified.
 
 use super::Part;

@@ -49,7 +49,7 @@ pub(super) fn warnings(found: &Identified) -> Vec<String> {
         let doubling_s = std::f64::consts::LN_2 / fit.rightmost_1_s;
         warnings.push(format!(
             "the closed loop is unstable: its motion doubles every {doubling_s:.1} s. Its gains have no standard errors: growth is \
-             exponential in the gains, a covariance takes it as linear"
+             exponential in the gains, but a covariance assumes linearity"
         ));
     }
     warnings.extend(rival(&found.steps[0].fit));

@@ -73,8 +73,8 @@ pub const SEARCH: &[Setting] = &[
         name: "search",
         key: "search.method",
         value: "METHOD",
-        help: "How the rides are simulated. fast: long steps find the borders, and exact rides confirm them, where no \
-               more acts than controller, constant delays and rider (docs/performance.md); plain: every ride exact and to its end",
+        help: "How the rides are simulated. fast: long steps find the borders, and exact rides confirm them, if only \
+               controller, constant delays and rider act (docs/performance.md); plain: every ride exact and to its end",
         default: Some("fast"),
         words: &[("fast", "Long steps, confirmed by exact rides"), ("plain", "Every ride exact")],
         set: |s, text| {
@@ -257,8 +257,8 @@ pub const PLANE: &[Setting] = &[
         name: "ray-search",
         key: "plane.method",
         value: "METHOD",
-        help: "How the rides are simulated. fast: long steps find the borders, and exact rides confirm them, where no \
-               more acts than controller, constant delays and rider (docs/performance.md); plain: every ride exact and to its end",
+        help: "How the rides are simulated. fast: long steps find the borders, and exact rides confirm them, if only \
+               controller, constant delays and rider act (docs/performance.md); plain: every ride exact and to its end",
         default: Some("fast"),
         words: &[("fast", "Long steps, confirmed by exact rides"), ("plain", "Every ride exact")],
         set: |s, text| {
