@@ -13,12 +13,14 @@ use super::{Ended, Failure, interrupt};
 use crate::basin::{Basin, Column, Search, Work};
 use crate::bicycle::linear::Linear;
 use crate::commands::basin::{BasinTask, Searched};
+use crate::commands::linear_loop::unstable_speeds;
 use crate::commands::{Hooks, Setup};
 use crate::counted::counted;
 use crate::eigen::critical_speeds;
 use crate::report::figure::{self, Band, BasinFigure};
 use crate::report::{netcdf, table, terminal};
 use crate::ride::{FallCause, FallCriterion, Outcome};
+use crate::scenario::LoadedRider;
 use control::Law;
 use serde_json::json;
 use std::fmt::Write;
@@ -150,6 +152,7 @@ pub(super) fn write(
         summary: || {
             terminal::basin(&figure, 80)
                 + &summary(result, search, &setup.conditions.fall, *seconds, threads)
+                + &unstable(result, setup)
                 + &drawn.map_or(String::new(), |drawn| drawn::summary(drawn, &search.speeds))
                 + extra
         },
@@ -247,6 +250,23 @@ fn lying(basin: &Basin, fall: &FallCriterion) -> String {
         let _ = writeln!(text, "beyond the border rides lie flat at {at} m/s");
     }
     text
+}
+
+/// Text: at how many of the speeds above 0 where every disturbance falls the linear loop is unstable, with a rider.
+fn unstable(basin: &Basin, setup: &Setup) -> String {
+    let none = |c: &Column| c.speed > 0.0 && c.upper == 0.0;
+    let speeds: Vec<f64> = basin.columns.iter().filter(|c| none(c)).map(|c| c.speed).collect();
+    let Some(LoadedRider { table, rider, .. }) = setup.rider.as_ref().filter(|_| !speeds.is_empty()) else {
+        return String::new();
+    };
+    let unstable = unstable_speeds(&setup.parameters, &setup.conditions.assist, rider, &speeds);
+    format!(
+        "note: height 0 at {} m/s, {}; the linear loop of rider {} with law {} is unstable at {unstable} of them (see sim-host eigen)\n",
+        spans(basin, none),
+        counted(speeds.len(), "speed", "speeds"),
+        table.name,
+        setup.config.law.name,
+    )
 }
 
 /// The speeds of the columns that satisfy `is`, as ranges: "0.9 to 4.1, 7.3 to 10".

@@ -2,12 +2,15 @@
 
 use super::outputs::{print, write_json};
 use super::{Ended, Failure};
+use crate::commands::linear_loop::unstable_speeds;
 use crate::counted::counted;
 use crate::report::output::Output;
 use crate::report::rider::{FitEntry, RiderDocument, gain_rows, standard_errors};
 use crate::report::table;
 use crate::report::tool::Tool;
+use crate::ride::Assist;
 use crate::rider::{Fit, KEYS, Outside, RiderTable, catalogue, merge};
+use crate::scenario::Scenario;
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -238,9 +241,31 @@ fn merged(args: &MergeArgs) -> Result<(), Failure> {
 fn check(name: &str) -> Result<(), Failure> {
     let table = catalogue::load(name)?;
     let mut text = format!("{name}: sound\n{}\n", summary(&table));
+    let made_for =
+        table.bicycle.as_deref().map(|name| Scenario { bicycle: name.into(), ..Scenario::default() });
+    let bicycle = made_for.unwrap_or_default().load_bicycle();
+    let mut speeds: Vec<f64> = table.rows.iter().map(|row| row.speed_m_s).collect();
+    speeds.dedup();
+    let at = counted(speeds.len(), "speed", "speeds");
+    let _ = match &bicycle {
+        Ok(bicycle) => {
+            writeln!(text, "linear loop on bicycle {}, without a law, at the {at} of the rows:", bicycle.name)
+        }
+        Err(e) => writeln!(text, "linear loop not computed: {e}"),
+    };
+    let stability = |fit| {
+        let (bicycle, rider) = bicycle.as_ref().ok().zip(table.rider(fit, Outside::default(), None).ok())?;
+        Some(match unstable_speeds(&bicycle.parameters, &Assist::None, &rider, &speeds) {
+            0 => ", stable".into(),
+            unstable => format!(", unstable at {unstable} of {at}"),
+        })
+    };
     for fit in Fit::ALL {
         let _ = match table.schedule(fit, Outside::default()) {
-            Ok(schedule) => writeln!(text, "gains {}: {} points", fit.name(), schedule.points().len()),
+            Ok(schedule) => {
+                let points = counted(schedule.points().len(), "point", "points");
+                writeln!(text, "gains {}: {points}{}", fit.name(), stability(fit).unwrap_or_default())
+            }
             Err(e) => writeln!(text, "gains {}: not possible: {e}", fit.name()),
         };
     }

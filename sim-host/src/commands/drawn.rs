@@ -1,13 +1,13 @@
 //! Drawn bicycles or riders of a basin: from the scenario to their conditions, and their part of the result.
 
+use super::linear_loop::feedback;
 use super::{Hooks, Setup};
 use crate::basin::{Drawn, Search, drawn, drawn_bicycles, drawn_riders};
-use crate::eigen::{Feedback, Model, unstable};
+use crate::eigen::{Model, unstable};
 use crate::report::document::{BasinDocument, RiderDrawsEntry, UncertainEntry};
-use crate::ride::{Assist, Conditions};
+use crate::ride::Conditions;
 use crate::rider::Drawing;
 use crate::scenario::ScenarioError;
-use control::Law;
 
 /// Requested draws.
 #[derive(Clone, Debug)]
@@ -84,15 +84,6 @@ impl Draws {
             DrawnRiders { from, unstable: unstable(&models, &search.speeds) }
         });
         DrawnBasins { of, count: self.count(), riders }
-    }
-}
-
-/// The feedback of an assist for small motions, without sensor delay.
-fn feedback(assist: &Assist) -> Feedback {
-    match assist {
-        Assist::Firmware(plan) => Feedback::new(plan.config().law.clone(), plan.config().capsize),
-        Assist::Ideal(ideal) => Feedback::new(ideal.law.clone(), Default::default()),
-        Assist::None | Assist::Own(_) => Feedback::new(Law::None, Default::default()),
     }
 }
 

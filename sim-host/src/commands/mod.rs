@@ -8,6 +8,7 @@ pub mod eigen;
 mod error;
 pub mod identify;
 pub mod identify_text;
+pub mod linear_loop;
 pub mod plane;
 pub mod replay;
 pub mod ride;

@@ -156,7 +156,11 @@ impl Scenario {
         self.rider.is_some()
     }
 
-    fn load_bicycle(&self) -> Result<Bicycle, ScenarioError> {
+    /// The bicycle, without the changes of `bicycle_set`.
+    ///
+    /// # Errors
+    /// It can't be loaded.
+    pub fn load_bicycle(&self) -> Result<Bicycle, ScenarioError> {
         match &self.bicycle {
             Content::Named(name) => Ok(catalogue::load(name)?),
             Content::Given(bicycle) => {

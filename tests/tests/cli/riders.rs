@@ -1,6 +1,7 @@
 //! Riders on the command line: names, files, options, and their errors.
 
 use serde_json::{Value, json};
+use sim_host::rider::{KEYS, catalogue};
 use tests::cli::{Bench, repository, word};
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
@@ -335,14 +336,38 @@ fn standard_errors_are_shown_and_tables_merged() {
     bench.run("rider merge my.toml --group-within 0").rejected_naming(&["tolerance", "0", "0.001"]);
 }
 
-/// Situation: the commented example.
-/// Action: check it and ride it.
-/// Must hold: it is valid.
+/// Situation: the commented example, and the same without its gains of the steer acceleration.
+/// Action: check both; ride the example; search the basin of both, with and without a law.
+/// Must hold: the example is linearly stable at the speeds of its rows with the default fit, and has a
+/// basin; the other is unstable at most of these speeds and has no basin, and both commands say so, the basin in a note.
 #[test]
 fn the_example_is_a_rider() {
     let bench = Bench::new(PROGRAM);
-    let example = repository("data/riders/example.toml");
-    let check = bench.run(&format!("rider check {}", word(&example)));
-    assert!(check.stdout.contains("6 sets in 2 groups, 2.1 to 7.4 m/s, delay 30 ms"), "{check:?}");
-    assert_eq!(bench.run(&format!("ride -q --speed 4 --rider {}", word(&example))).code, Some(0));
+    let example = word(&repository("data/riders/example.toml"));
+    let check = bench.run(&format!("rider check {example}")).stdout;
+    assert!(check.contains("10 sets in 5 groups, 2.1 to 7.3 m/s, delay 30 ms"), "{check}");
+    assert!(check.contains("on bicycle rigid_jason, without a law, at the 8 speeds of the rows"), "{check}");
+    assert!(check.contains("gains mean: 5 points, stable\n"), "{check}");
+    assert!(check.contains("gains regression: 2 points, unstable at 2 of 8 speeds\n"), "{check}");
+    assert_eq!(bench.run(&format!("ride -q --speed 4 --rider {example}")).code, Some(0));
+
+    let mut four =
+        catalogue::load(repository("data/riders/example.toml").to_str().unwrap()).expect("the example");
+    let steer_acceleration = KEYS.iter().position(|key| *key == "K_delta_dd").unwrap();
+    four.rows.iter_mut().for_each(|row| row.gains.0[steer_acceleration] = 0.0);
+    bench.write("four.toml", four.to_toml());
+    let check = bench.run("rider check four.toml").stdout;
+    assert!(check.contains("gains mean: 5 points, unstable at 8 of 8 speeds\n"), "{check}");
+    for law in ["none", "h"] {
+        let basin =
+            |rider: &str| bench.run(&format!("basin --speeds 2:5:1 --law {law} --rider {rider}")).stdout;
+        let (sound, none) = (basin(&example), basin("four.toml"));
+        let area = sound.lines().find_map(|line| line.strip_prefix("area ")).expect("an area");
+        let area: f64 = area.split(' ').next().unwrap().parse().expect("a number");
+        assert!((20.0..45.0).contains(&area) && !sound.contains("note:"), "{sound}");
+        let note = format!(
+            "height 0 at 2 to 5 m/s, 4 speeds; the linear loop of rider four.toml with law {law} is unstable at 4 of them"
+        );
+        assert!(none.contains("area 0.000 ") && none.contains(&note), "{none}");
+    }
 }
