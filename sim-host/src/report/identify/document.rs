@@ -1,6 +1,6 @@
 //! The documents of an identified rider.
 
-use super::warnings::{unidentified, warnings};
+use super::warnings::{insignificant, warnings};
 use crate::bicycle::ForcePoint;
 use crate::identify::{Fit, Hold, Identified, LocalOptimum, PerGain, Signal, Step, symbols};
 use crate::report::resolved::ResolvedBicycle;
@@ -81,12 +81,12 @@ pub struct GainValue {
     pub std_error: Option<f64>,
 }
 
-/// A gain that the record does not determine.
+/// A gain that does not differ significantly from zero.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Unidentified {
     /// The gain.
     pub gain: &'static str,
-    /// The reason.
+    /// The rest of the sentence that begins with the gain: its 95 % interval, and the gain that it can't be separated from.
     pub why: String,
 }
 
@@ -232,7 +232,7 @@ pub struct IdentifyDocument {
     pub independent_samples: f64,
     /// Why the gains may be wrong by more than their standard errors say; empty if nothing was noticed.
     pub warnings: Vec<String>,
-    /// Gains that the record does not determine; empty without standard errors, which tell.
+    /// Gains that do not differ significantly from zero: their 95 % intervals contain it. Empty without standard errors.
     pub not_identified: Vec<Unidentified>,
     /// The distinct optima of the full fit, best first.
     pub optima: Vec<OptimumEntry>,
@@ -357,7 +357,7 @@ impl IdentifyDocument {
             condition: fit.condition,
             independent_samples: fit.residuals.iter().map(|residuals| residuals.independent).sum(),
             warnings: warnings(found),
-            not_identified: if known { unidentified(fit) } else { Vec::new() },
+            not_identified: if known { insignificant(fit) } else { Vec::new() },
             optima: all.optima.iter().map(optimum).collect(),
             reduction: found.steps.iter().map(step).collect(),
             selected: found.selected,

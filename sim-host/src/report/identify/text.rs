@@ -62,7 +62,7 @@ pub fn text(document: &IdentifyDocument) -> String {
         number(document.rightmost_eigenvalue_1_s)
     );
     for gain in &document.not_identified {
-        let _ = writeln!(text, "{} is not identified: {}", gain.gain, gain.why);
+        let _ = writeln!(text, "{} {}", gain.gain, gain.why);
     }
     if document.reduction.len() > 1 {
         reduction(&mut text, document);

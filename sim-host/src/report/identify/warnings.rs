@@ -1,12 +1,10 @@
-//! What is doubtful about an identified rider: warnings about the fit, and gains that the record does not determine.
+//! What is doubtful about an identified rider: warnings about the fit, and gains that do not differ significantly from zero.
 
 use super::correlation::NORMAL_95;
 use super::document::Unidentified;
 use super::text::number;
 use crate::identify::{DROP_95, Fit, Identified, LocalOptimum, PerGain, symbols};
 
-/// Relative standard error above which a gain is not identified: its 95 % interval contains zero.
-const LOOSE: f64 = 0.5;
 /// Correlation from which two gains count as inseparable.
 const TOGETHER: f64 = 0.95;
 
@@ -78,24 +76,50 @@ fn rival(full: &Fit) -> Option<String> {
     ))
 }
 
-/// The gains of a fit that the record does not determine.
-pub(super) fn unidentified(fit: &Fit) -> Vec<Unidentified> {
+/// The gains of a fit that do not differ significantly from zero.
+pub(super) fn insignificant(fit: &Fit) -> Vec<Unidentified> {
     let errors = fit.standard_errors();
-    let doubt = |(place, gain): (usize, &usize)| {
-        let relative = errors[*gain] / fit.gains[*gain].abs();
+    let doubt = |(place, &gain): (usize, &usize)| {
         let others = (0..fit.active.len()).filter(|other| *other != place);
-        let partner = others
+        let closest = others
             .max_by(|a, b| fit.correlation(place, *a).abs().total_cmp(&fit.correlation(place, *b).abs()));
-        let together = partner.map(|other| (symbols()[fit.active[other]], fit.correlation(place, other)));
-        (relative > LOOSE).then(|| Unidentified {
-            gain: symbols()[*gain],
-            why: match together {
-                Some((name, correlation)) if correlation.abs() > TOGETHER => {
-                    format!("its 95 % interval contains zero; it can't be separated from {name} (correlation {correlation:.3})")
-                }
-                _ => "its 95 % interval contains zero: the record does not need it".into(),
-            },
-        })
+        let closest = closest.map(|other| (symbols()[fit.active[other]], fit.correlation(place, other)));
+        Some(Unidentified { gain: symbols()[gain], why: why(fit.gains[gain], errors[gain], closest)? })
     };
     fit.active.iter().enumerate().filter_map(doubt).collect()
+}
+
+/// Why a gain with a standard error does not differ significantly from zero, if so; `closest` is the gain with the largest
+/// correlation.
+fn why(gain: f64, std_error: f64, closest: Option<(&str, f64)>) -> Option<String> {
+    let insignificant = "does not differ significantly from zero: its 95 % interval contains zero";
+    let together = closest.filter(|(_, correlation)| correlation.abs() > TOGETHER);
+    (NORMAL_95 * std_error >= gain.abs()).then(|| match together {
+        Some((name, correlation)) => {
+            format!("{insignificant}; it can't be identified separately from {name} (correlation {correlation:.3})")
+        }
+        None => insignificant.into(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NORMAL_95, why};
+
+    /// Situation: a gain of -2 with a standard error on both sides of that with which its 95 % interval ends at zero, alone and
+    /// with correlated gains.
+    /// Action: ask what is doubtful.
+    /// Must hold: nothing with the smaller error; with the larger one that it does not differ significantly from zero. Only a
+    /// correlation of more than 0.95 makes two gains inseparable.
+    #[test]
+    fn a_gain_whose_interval_contains_zero_is_insignificant() {
+        let [below, above] = [0.999, 1.001].map(|of_limit| of_limit * 2.0 / NORMAL_95);
+        assert_eq!(why(-2.0, below, Some(("K_delta_d", 0.99))), None);
+        let alone = "does not differ significantly from zero: its 95 % interval contains zero";
+        assert_eq!(why(-2.0, above, None).as_deref(), Some(alone));
+        assert_eq!(why(-2.0, above, Some(("K_delta_d", 0.94))).as_deref(), Some(alone));
+        let together =
+            format!("{alone}; it can't be identified separately from K_delta_d (correlation -0.960)");
+        assert_eq!(why(-2.0, above, Some(("K_delta_d", -0.96))), Some(together));
+    }
 }

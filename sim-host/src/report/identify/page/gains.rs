@@ -1,4 +1,4 @@
-//! The selected gains, and those that the record does not determine.
+//! The selected gains, and those that are zero or do not differ significantly from it.
 
 use super::{list, number, paragraph};
 use crate::identify::{Identified, symbols};
@@ -67,8 +67,8 @@ pub(super) fn gains(document: &IdentifyDocument, found: &Identified) -> String {
     ))
 }
 
-pub(super) fn not_identified(document: &IdentifyDocument) -> String {
-    let loose = document.not_identified.iter().map(|gain| format!("{}: {}.", gain.gain, gain.why));
+pub(super) fn insignificant(document: &IdentifyDocument) -> String {
+    let loose = document.not_identified.iter().map(|gain| format!("{} {}.", gain.gain, gain.why));
     let full = &document.config.feedback;
     let reason = |name: &&'static str| match document.gains.contains_key(name) {
         true => None,
@@ -79,10 +79,10 @@ pub(super) fn not_identified(document: &IdentifyDocument) -> String {
     };
     let all: Vec<String> = loose.chain(symbols().iter().filter_map(reason)).collect();
     match all[..] {
-        [] if document.covariance.is_none() => {
-            paragraph("Which gains the record determines is not known: they have no standard errors.")
-        }
-        [] => paragraph("Every gain is identified: no 95 % interval contains zero."),
+        [] if document.covariance.is_none() => paragraph(
+            "Which gains differ significantly from zero is not known: they have no standard errors.",
+        ),
+        [] => paragraph("Every gain differs significantly from zero: no 95 % interval contains zero."),
         _ => list(all.iter().map(String::as_str)),
     }
 }

@@ -22,7 +22,7 @@ pub fn page(document: &IdentifyDocument, found: &Identified, command: &str, ride
     let sections = [
         ("fitted", "What was fitted", about::fitted(document)),
         ("gains", "Gains", gains::gains(document, found)),
-        ("not-identified", "What is not identified", gains::not_identified(document)),
+        ("not-identified", "Gains that are or may be zero", gains::insignificant(document)),
         ("signals", "Measured and modelled signals", figures::signals(found, &course)),
         ("residuals", "Residuals", figures::residuals(found, &course)),
         ("impulse-response", "Impulse response", figures::impulse_responses(found)),
