@@ -3,6 +3,7 @@
 //! A number that can be off has a switch beside it, `NAME_on`.
 
 use crate::variable::{Kind, Role, Variable};
+use control::law::{LAW_NAMES, LAWS};
 use control::param::{ParamSpec, ParamVisitor};
 use control::{Config, Law};
 use link::key::Key;
@@ -120,9 +121,13 @@ impl ParamVisitor for Setter<'_> {
 /// The law and the slope of a law with one.
 pub(crate) fn law_variables(law: &Law) -> [Variable; 2] {
     let slope = if law.slope() > 0.0 { law.slope() } else { 4.0 };
+    let sloped = || LAWS.iter().filter_map(|spec| Some((spec.name, spec.parameter?)));
+    let names: Vec<&str> = sloped().map(|(name, _)| name).collect();
+    let least = sloped().map(|(_, slope)| slope.min).fold(f32::INFINITY, f32::min);
+    let most = sloped().map(|(_, slope)| slope.max).fold(f32::NEG_INFINITY, f32::max);
     [
         Variable::of_kind(
-            Kind::Choice(control::law::LAW_NAMES),
+            Kind::Choice(LAW_NAMES),
             Role::Parameter,
             "law",
             "roll-rate law; table: the points of the export",
@@ -132,9 +137,9 @@ pub(crate) fn law_variables(law: &Law) -> [Variable; 2] {
             Role::Parameter,
             "law_slope",
             "N s^2/rad",
-            "slope of the gain over speed of cl2 and balance-assist",
+            &format!("slope of the gain over speed of {}", names.join(" and ")),
         )
         .starting(decimal(slope))
-        .within(1e-3, 20.0),
+        .within(decimal(least), decimal(most)),
     ]
 }

@@ -155,16 +155,23 @@ fn unknown_bicycles() {
     assert_rejected(&bench, "eigen --bicycle my.toml#city", &["my.toml", "city"]);
 }
 
-/// Situation: the help of a command that takes a law.
-/// Action: read it.
-/// Must hold: it names every law that is chosen by name, as a law's error message does.
+/// Situation: the help of the commands that take a law, and the documents.
+/// Action: read them.
+/// Must hold: they name every law that is chosen by name, as a law's error message does; the glossary has all laws.
 #[test]
-fn the_help_names_every_law() {
+fn help_and_documents_name_every_law() {
     let bench = Bench::new(PROGRAM);
-    let help = bench.run("basin --help").stdout;
+    let help = ["basin", "eigen"].map(|command| bench.run(&format!("{command} --help")).stdout);
+    let page = |name: &str| std::fs::read_to_string(repository(name)).expect("a page");
+    let (table, glossary) = (page("docs/cli.md"), page("docs/glossary.md"));
+    let laws = glossary.lines().find(|row| row.starts_with("| law |")).expect("a row");
+    for name in control::law::LAW_NAMES {
+        assert!(laws.contains(&format!("`{name}`")), "docs/glossary.md: {name}");
+    }
     for spec in control::law::LAWS.iter().filter(|spec| !spec.is_table()) {
         let name = if spec.parameter.is_some() { format!("{}:K", spec.name) } else { spec.name.to_owned() };
-        assert!(help.contains(&format!(" {name},")), "{name}: {help}");
+        assert!(help.iter().all(|help| help.contains(&format!(" {name},"))), "{name}: {help:?}");
+        assert!(table.contains(&format!("| `{name}` |")), "docs/cli.md: {name}");
         assert_rejected(&bench, "eigen --law nope", &[&name]);
     }
 }

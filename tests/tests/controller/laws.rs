@@ -4,6 +4,7 @@ use control::law::{LAWS, LawError};
 use control::param::{Checker, ParamVisitor};
 use control::{Capsize, GainSchedule, Law};
 use proptest::prelude::*;
+use proptest::sample::select;
 use sim_host::bicycle::catalogue;
 use sim_host::eigen::{Feedback, Model, critical_speeds, rightmost, stability};
 
@@ -16,18 +17,9 @@ fn any_law() -> impl Strategy<Value = Law> {
         });
         let mut points: Vec<(f32, f32)> = risen.collect();
         points.dedup_by_key(|(v, _)| *v);
-        Law::Table(GainSchedule::new(&points).expect("a valid table"))
+        GainSchedule::new(&points).expect("a valid table")
     });
-    prop_oneof![
-        Just(Law::None),
-        any::<bool>().prop_map(|cut| Law::H { cut }),
-        Just(Law::F),
-        Just(Law::G),
-        Just(Law::Cl1),
-        (0.001_f32..20.0).prop_map(|k| Law::Cl2 { k }),
-        (0.001_f32..20.0).prop_map(|kappa| Law::BalanceAssist { kappa }),
-        table,
-    ]
+    (select(&LAWS), 0.001_f32..20.0, table).prop_map(|(spec, slope, table)| (spec.build)(slope, table))
 }
 
 /// Effect of rounding on a gain: the terms of f are up to this large.

@@ -1,6 +1,7 @@
 //! The numbers in `docs/link.md` are those of the program.
 
 use crate::messages::all;
+use control::law::{LAW_NAMES, LAWS};
 use control::{Config, Plan};
 use link::frame::{MAX_FRAME, MAX_PAYLOAD, VERSION};
 use link::parameter_list::each_but_law;
@@ -39,10 +40,18 @@ fn the_page_has_the_programs_numbers() {
         format!("u8 layout ({LAYOUT})"),
         format!("of {MIN_PAGE} bytes or more each"),
         format!("today's {parameters} parameters and a law without a table is {record} bytes"),
+        format!("its place in `{}`", LAW_NAMES.join(" ")),
         format!("takes {stores} stores before"),
         format!("room for {MAX_ENTRIES} parameters"),
     ] {
         assert!(text.contains(&line), "docs/link.md does not contain: {line}");
+    }
+    for spec in LAWS.iter().filter_map(|spec| spec.parameter) {
+        assert!(
+            text.contains(&format!("`law.{}`", spec.name)),
+            "docs/link.md does not contain law.{}",
+            spec.name
+        );
     }
     for message in all() {
         let name = format!("{message:?}");

@@ -1,6 +1,7 @@
 //! The parameter list, including the law.
 
 use crate::requests::answer_to;
+use control::law::LAW_NAMES;
 use control::param::{ParamSpec, ParamVisitor};
 use control::{Config, GainSchedule, Law};
 use link::Key;
@@ -97,7 +98,7 @@ fn every_parameter_is_listed() {
     let law = one("law");
     assert_eq!(
         (law.numbers[0], law.names.as_str()),
-        (Some(2.0), "none h h-cut f g cl1 cl2 table balance-assist")
+        (Some(f32::from(config.law.number())), LAW_NAMES.join(" ").as_str())
     );
     assert_eq!(one("input.wheel").names, "front rear");
     for (key, unit) in [

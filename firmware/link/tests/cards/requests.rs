@@ -1,6 +1,7 @@
 //! Reading and setting parameters over the link.
 
 use control::Config;
+use control::law::LAWS;
 use link::Key;
 use link::message::Message;
 use link::page::PAGE_BYTES;
@@ -116,6 +117,9 @@ fn a_mistake_is_named() {
     let config = Config::product();
     let mut untapered = config.clone();
     untapered.limits.taper = None;
+    let beyond = LAWS.len();
+    let no_law = |number: usize| format!("law = {number} is outside 0 to {}", beyond - 1);
+    let (first_beyond, far_beyond) = (no_law(beyond), no_law(200));
     for (config, request, why, text) in [
         (&config, to("limits.max_torque", 1.0), RejectReason::UnknownKey, "no parameter limits.max_torque"),
         (&config, Message::Get { key: Key::whole("") }, RejectReason::UnknownKey, "no parameter "),
@@ -147,7 +151,7 @@ fn a_mistake_is_named() {
             "calibration.motor_reversed = 0.5 is not a whole number of 0 to 1",
         ),
         (&config, to("rate_hz", 500.0), RejectReason::OutOfRange, "rate_hz = 500 is outside 1000 to 1000"),
-        (&config, to("law", 9.0), RejectReason::OutOfRange, "law = 9 is outside 0 to 8"),
+        (&config, to("law", beyond as f32), RejectReason::OutOfRange, first_beyond.as_str()),
         (&config, to("law", 6.0), RejectReason::OutOfRange, "law.cl2.k = 0 is outside 0.001 to 20"),
         (&config, to("law", 7.0), RejectReason::OutOfRange, "law.table.points = 0 is outside 1 to 32"),
         (
@@ -163,12 +167,7 @@ fn a_mistake_is_named() {
             "limits.taper.full_m_s is in a group that is off; switch that on first",
         ),
         (&config, Message::SetLaw(&[0, 0]), RejectReason::Malformed, "the request can't be read"),
-        (
-            &config,
-            Message::SetLaw(&[200, 0, 0, 0, 0, 0]),
-            RejectReason::OutOfRange,
-            "law = 200 is outside 0 to 8",
-        ),
+        (&config, Message::SetLaw(&[200, 0, 0, 0, 0, 0]), RejectReason::OutOfRange, far_beyond.as_str()),
         (
             &config,
             Message::SetLaw(&[6, 0, 0, 0, 0, 0]),
