@@ -28,7 +28,7 @@ struct PartArgs {
 }
 
 pub(super) fn run(args: &Args, study: &Study) -> Result<Ended, Failure> {
-    let named = |part: &Part, e: Failure| format!("study {}, sweep {}: {e}", study.name, part.name);
+    let named = |part: &Part, e: Failure| format!("study {}, sweep {}: {e}", study.source, part.name);
     let sweeps: Vec<SweepTask> =
         study.parts.iter().map(|p| resolved(p).map_err(|e| named(p, e))).collect::<Result<_, _>>()?;
     interrupt::install();

@@ -86,8 +86,7 @@ pub fn load(name: &str) -> Result<Study, StudyError> {
     }
     let text =
         crate::input_file::text(path).map_err(|error| StudyError::Read { name: name.into(), error })?;
-    let stem = path.file_stem().map_or(name.into(), |s| s.to_string_lossy().into_owned());
-    parse(&stem, &text).map(Study::Swept)
+    parse(name, &text).map(Study::Swept)
 }
 
 #[cfg(test)]

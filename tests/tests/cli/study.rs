@@ -82,7 +82,7 @@ fn studies_are_listed_with_their_questions() {
 
 /// Situation: studies that are wrong, do not exist, or do not have such an option.
 /// Action: compute them.
-/// Must hold: study, sweep, option and value named; no file is left.
+/// Must hold: file, sweep, option and value named; no file is left.
 #[test]
 fn wrong_studies_are_named() {
     let bench = Bench::new(PROGRAM);
@@ -91,11 +91,17 @@ fn wrong_studies_are_named() {
         .rejected_naming(&["`nothing`", "balance-assist, equal-vaf, prototype, limits, imu"]);
     bench.run("study imu --quick").rejected_naming(&["--quick", "study imu", "prototype"]);
     bench.write("a.toml", STUDY.replace("law=h,f\"", "law=h,q\""));
-    bench.run("study a.toml").rejected_naming(&["study a, sweep laws", "cell rider=none, law=q"]);
+    bench.run("study a.toml").rejected_naming(&["study a.toml, sweep laws", "cell rider=none, law=q"]);
     bench.write("a.toml", STUDY.replace("--law h --speeds", "--law h --speed"));
-    bench.run("study a.toml").rejected_naming(&["study a, sweep torque", "--speed"]);
+    bench.run("study a.toml").rejected_naming(&["study a.toml, sweep torque", "--speed"]);
     bench.write("a.toml", STUDY.replace("along = \"law\"", "along = \"rider\""));
-    bench.run("study a.toml").rejected_naming(&["study a", "sweep laws", "`rider`"]);
+    bench.run("study a.toml").rejected_naming(&["study a.toml", "sweep laws", "`rider`"]);
+    bench.write("a.toml", STUDY.replace("{ law = \"h\" }", "{ law = [\"h\"] }"));
+    bench.run("study a.toml").rejected_naming(&[
+        "study a.toml: TOML parse error",
+        "law",
+        "expected a string",
+    ]);
     bench.run("study balance-assist --pages a.toml").rejected_naming(&["can't make a.toml/studies"]);
     assert_eq!(bench.files(), ["a.toml"]);
 }

@@ -26,7 +26,7 @@ pub enum StudyError {
     /// Not TOML, or a key is missing, unknown or of a wrong type.
     #[error("study {name}: {reason}")]
     Syntax {
-        /// The study.
+        /// The file, or the built-in study.
         name: String,
         /// The parser's message.
         reason: String,
@@ -34,7 +34,7 @@ pub enum StudyError {
     /// A wrong sweep.
     #[error("study {name}: sweep {sweep}: {error}")]
     Part {
-        /// The study.
+        /// The file, or the built-in study.
         name: String,
         /// The sweep.
         sweep: String,

@@ -5,6 +5,7 @@ use super::options::StudyOptions;
 use crate::sweep::{Axis, AxisError};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// A question and the sweeps that answer it.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -13,6 +14,9 @@ pub struct Study {
     /// Its name, equal to that of its files.
     #[serde(skip)]
     pub name: String,
+    /// Its file as given, or the name of a built-in study, for messages.
+    #[serde(skip)]
+    pub source: String,
     /// Title of the page.
     pub title: String,
     /// The question, and the method.
@@ -40,7 +44,7 @@ pub struct Part {
     pub options: StudyOptions,
     /// The axes, in the form of `--over`.
     pub over: Vec<String>,
-    /// The reference cell: values by key. Axes without an entry define groups, each with its own reference.
+    /// The reference cell: one value by key. Axes without an entry define groups, each with its own reference.
     pub reference: BTreeMap<String, String>,
     /// Unit of the numbers along the axis below, if they have none.
     #[serde(default)]
@@ -49,19 +53,23 @@ pub struct Part {
     pub along: String,
 }
 
-/// Parses the study `name` from a TOML text.
+/// Parses a study from a TOML text. `source` is its file or the name of a built-in study.
 ///
 /// # Errors
-/// Names study, sweep and key.
-pub fn parse(name: &str, text: &str) -> Result<Study, StudyError> {
+/// Names source, sweep and key.
+pub fn parse(source: &str, text: &str) -> Result<Study, StudyError> {
     let syntax =
-        |e: toml::de::Error| StudyError::Syntax { name: name.into(), reason: e.to_string().trim().into() };
+        |e: toml::de::Error| StudyError::Syntax { name: source.into(), reason: e.to_string().trim().into() };
     let mut study: Study = toml::from_str(text).map_err(syntax)?;
-    study.name = name.into();
+    study.name =
+        Path::new(source).file_stem().map_or(source.into(), |stem| stem.to_string_lossy().into_owned());
+    study.source = source.into();
     for part in &study.parts {
-        let (name, sweep) = (&study.name, &part.name);
-        let wrong =
-            |error| StudyError::Part { name: name.clone(), sweep: sweep.clone(), error: Box::new(error) };
+        let wrong = |error| StudyError::Part {
+            name: source.into(),
+            sweep: part.name.clone(),
+            error: Box::new(error),
+        };
         part.check().map_err(wrong)?;
     }
     Ok(study)
@@ -107,7 +115,7 @@ mod tests {
     fn errors_in_a_file_are_named() {
         let right = "title='t'\nquestion='q'\n[[sweep]]\nname='a'\ntitle='t'\noptions=''\nover=['law=h,f']\n\
                      reference={law='h'}\nalong='law'\n";
-        assert!(parse("s", right).is_ok());
+        assert_eq!(parse("f/s.toml", right).unwrap().name, "s");
         for (from, to, named) in [
             ("law='h'", "law='g'", "law=g"),
             ("along='law'", "along='imu'", "`imu`"),
@@ -117,9 +125,10 @@ mod tests {
             ("options=''", "options={lwa='h'}", "`lwa`"),
             ("options=''", "options={law=['h','f']}", "`law` can be given once"),
             ("options=''", "options=3", "a table of options"),
+            ("law='h'}", "law=['h']}", "law=['h']"),
         ] {
-            let error = parse("s", &right.replace(from, to)).unwrap_err().to_string();
-            assert!(error.starts_with("study s: ") && error.contains(named), "{error}");
+            let error = parse("f/s.toml", &right.replace(from, to)).unwrap_err().to_string();
+            assert!(error.starts_with("study f/s.toml: ") && error.contains(named), "{error}");
         }
     }
 }
