@@ -15,8 +15,8 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
-FILE is any recording that `replay` reads in which a controller steered, with its torque as
-`reference.torque` or `motor` of the map. Numbers that a closed loop does not determine are left
+FILE is any recording that `replay` reads in which a controller steered, with its torque as \
+`reference.torque` or `motor` of the map. Numbers that a closed loop does not determine are left \
 out, with the reason.
 
 Examples:
@@ -109,8 +109,8 @@ fn one(
     path: &Path,
 ) -> Result<LoopEntry, String> {
     let recording = read(path, &args.recording.options()).map_err(|error| error.beside(path))?;
-    let map = map.cloned().or_else(|| Map::by_columns(&recording));
-    let map = map.ok_or("no built-in map has these columns; give one with --map")?;
+    let map =
+        map.cloned().map_or_else(|| Map::by_columns(&recording), Ok).map_err(|error| error.to_string())?;
     let samples = samples(&recording, &map, PERIOD_S).map_err(|remark| remark.to_string())?;
     samples.remarks.iter().for_each(|remark| complain(&format!("{}: {remark}", path.display())));
     let record = within(&record(&samples).map_err(|error| error.to_string())?, args.from, args.to);

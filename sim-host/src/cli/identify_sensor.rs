@@ -16,7 +16,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 const EXAMPLES: &str = "\
-FILE is any recording that `replay` reads, with a gyro and a wheel speed; --map assigns its columns. Standing
+FILE is any recording that `replay` reads, with a gyro and a wheel speed; --map assigns its columns. Standing \
 and riding are distinguished by the speed. Values that the recordings do not determine are left out, with the reason.
 
 Examples:
@@ -108,8 +108,7 @@ fn recording(args: &Args, map: Option<&Map>, path: &Path) -> Result<Recording, F
     let recording = read(path, &args.recording.options())?;
     let map = match map {
         Some(map) => map.clone(),
-        None => Map::by_columns(&recording)
-            .ok_or(format!("{name}: no built-in map has these columns; give one with --map"))?,
+        None => Map::by_columns(&recording).map_err(|error| format!("{name}: {error}"))?,
     };
     let samples = samples(&recording, &map, PERIOD_S).map_err(|remark| format!("{name}: {remark}"))?;
     samples.remarks.iter().for_each(|remark| complain(&format!("{name}: {remark}")));

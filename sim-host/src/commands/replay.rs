@@ -206,8 +206,7 @@ impl Replay {
         let recording = read(path, &options)?;
         let map = match &self.map {
             Some(map) => map.clone(),
-            None => Map::by_columns(&recording)
-                .ok_or(format!("{name}: no built-in map has these columns; give one with --map"))?,
+            None => Map::by_columns(&recording).map_err(|error| format!("{name}: {error}"))?,
         };
         let period_s = 1.0 / f64::from(self.config.rate_hz);
         let samples = samples(&recording, &map, period_s).map_err(|remark| format!("{name}: {remark}"))?;

@@ -1,6 +1,6 @@
 //! A map assigns the columns of a recording to sensors, with unit, sign and axes. `docs/replay.md`.
 
-use super::map_error::{MapError, MapTextError, SignalError};
+use super::map_error::{ColumnsError, MapError, MapTextError, SignalError};
 use super::unit::Quantity;
 use crate::plant::Sensor;
 use crate::recording::Recording;
@@ -15,6 +15,9 @@ pub const SHIPPED: [(&str, &str); 5] = [
     ("robot-bicycle", include_str!("../../../data/maps/robot-bicycle.toml")),
     ("sbw-bicycle", include_str!("../../../data/maps/sbw-bicycle.toml")),
 ];
+
+/// Columns that only the table of `ride --csv` has together.
+const RIDE_COLUMNS: [&str; 3] = ["rear_wheel_rate", "measured_roll_rate", "rider_torque"];
 
 /// Assignment of a recording's columns.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
@@ -189,7 +192,10 @@ impl Map {
     }
 
     /// The built-in map whose gyro and time columns the recording has.
-    pub fn by_columns(recording: &Recording) -> Option<Self> {
+    ///
+    /// # Errors
+    /// There is none.
+    pub fn by_columns(recording: &Recording) -> Result<Self, ColumnsError> {
         let has = |name: &str| {
             recording.groups.iter().flat_map(|group| &group.columns).any(|column| column.name == name)
         };
@@ -199,7 +205,9 @@ impl Map {
             time.is_none_or(has)
                 && gyro.into_iter().all(|source| matches!(source, Source::Column(name) if has(name)))
         };
-        SHIPPED.iter().filter_map(|(_, text)| Self::parse(text).ok()).find(fits)
+        let known = SHIPPED.iter().filter_map(|(_, text)| Self::parse(text).ok()).find(fits);
+        let ride = RIDE_COLUMNS.into_iter().all(has);
+        known.ok_or(if ride { ColumnsError::Ride } else { ColumnsError::Unknown })
     }
 
     /// The signal of one sensor.

@@ -26,6 +26,20 @@ pub enum MapError {
     },
 }
 
+/// Columns that fit no built-in map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ColumnsError {
+    /// Those of `ride --csv`: the motion, not the samples of the sensors.
+    #[error(
+        "this is the table of `ride --csv`, which lacks the samples of the sensors; `ride --frames FILE` writes them"
+    )]
+    Ride,
+    /// Others.
+    #[error("no built-in map has these columns; give one with --map")]
+    Unknown,
+}
+
 /// Text that is no map.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]

@@ -27,7 +27,7 @@ pub use extract::samples;
 pub use feed::{Feed, FeedError, FeedOptions};
 pub use leap::Leap;
 pub use map::{Map, Mapped, Perturbation, References, Resample, SHIPPED, Signal, Source, Switch, Time};
-pub use map_error::{MapError, MapTextError, SignalError, UnitError};
+pub use map_error::{ColumnsError, MapError, MapTextError, SignalError, UnitError};
 pub use perturbed::{Perturbed, Timed, perturbed};
 pub use row::Row;
 pub use run::{CauseRecord, FramesError, ModeRecord, Press, Replayed, RunOptions, frames, run};

@@ -75,3 +75,24 @@ fn without_gyro_or_wheel_there_is_no_replay() {
     bench.write("ride.csv", "a,b\n1,2\n");
     bench.run("replay ride.csv").rejected_naming(&["no built-in map", "--map"]);
 }
+
+/// Situation: the table of a ride, without samples, and its frames.
+/// Action: replay both, and identify a sensor and a loop from the table.
+/// Must hold: the table is rejected with the option that writes what can be replayed; the frames are replayed.
+#[test]
+fn the_table_of_a_ride_is_no_recording() {
+    let bench = Bench::new(PROGRAM);
+    assert_eq!(
+        bench.run("ride -q --speed 4 --steer-rate 1 --csv ride.csv --frames ride.frames").code,
+        Some(0)
+    );
+    for command in ["replay", "identify loop", "identify sensor --sensor gyro"] {
+        let run = bench.run(&format!("{command} ride.csv"));
+        let named = ["ride.csv: ", "`ride --csv`", "`ride --frames FILE`"];
+        assert!(
+            run.code == Some(1) && named.iter().all(|text| run.stderr.contains(text)),
+            "{command}: {run:?}"
+        );
+    }
+    assert_eq!(bench.run("replay -q ride.frames").code, Some(0));
+}
