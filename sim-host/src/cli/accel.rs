@@ -11,10 +11,10 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 const HELP: &str = "\
-IN.csv has the columns roll, steer, roll_rate, steer_rate, rear_wheel_rate, roll_torque, steer_torque
-in any order; rad, rad/s, N m; right positive; rear_wheel_rate negative forward. The table of
-`ride --csv` is accepted as well: without torque columns, roll_torque is 0 and steer_torque the sum of its
-motor_torque and rider_torque. Lines that begin with # are skipped. The output has the
+IN.csv has the columns roll, steer, roll_rate, steer_rate, rear_wheel_rate, roll_torque, steer_torque \
+in any order; rad, rad/s, N m; right positive; rear_wheel_rate negative forward. The table of \
+`ride --csv` is accepted as well: without torque columns, roll_torque is 0 and steer_torque the sum of its \
+motor_torque and rider_torque. Lines that begin with # are skipped. The output has the \
 columns roll_acc, steer_acc, rear_wheel_acc in rad/s^2 with 17 significant digits, line by line.
 
 Example:

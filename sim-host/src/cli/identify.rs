@@ -18,7 +18,7 @@ use crate::weave::measured::beside_name;
 use serde_json::json;
 
 pub(super) const EXAMPLES: &str = "\
-A perturbation record has a lateral force or a steer torque that disturbs a rider at constant speed, and the steer angle:
+A perturbation record has a lateral force or a steer torque that disturbs a rider at constant speed, and the steer angle: \
 docs/identify.md. `sim-host record` makes synthetic ones.
 
 Examples:

@@ -63,7 +63,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 const EXAMPLES: &str = "\
-Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 3 part of a board's
+Exit codes: 0 ran (a fall is a result), 1 bad input or I/O, 2 usage, 3 part of a board's \
 data could not be decoded, 130 interrupted.
 
 Examples:
@@ -114,7 +114,7 @@ enum Command {
     /// Bicycles: list, show, check, accelerations.
     #[command(subcommand, after_help = bicycle::EXAMPLES)]
     Bicycle(bicycle::Command),
-    /// Riders: list, show, check.
+    /// Riders: list, show, check, merge.
     #[command(subcommand, after_help = rider::EXAMPLES)]
     Rider(rider::Command),
     /// A gain schedule with the largest worst-case basin, evaluated beside the known laws.

@@ -23,9 +23,9 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 const EXAMPLES: &str = "\
-Ends with Ctrl-C, after --for, at the end of a recording, or when the line is lost; written files remain.
-A lost serial port is reopened when it is back within the time of --reopen.
-If standard output is no terminal, it prints a line per second and one for every change of mode, causes, drive
+Ends with Ctrl-C, after --for, at the end of a recording, or when the line is lost; written files remain. \
+A lost serial port is reopened when it is back within the time of --reopen. \
+If standard output is no terminal, it prints a line per second and one for every change of mode, causes, drive \
 or missed deadlines.
 
 Examples:

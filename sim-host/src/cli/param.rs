@@ -36,7 +36,7 @@ Examples:
   sim-host param get law --port /dev/ttyACM0";
 
 const SET_HELP: &str = "\
-VALUE is a number, none, on, off or a name, as `param list` shows; for the law one of --law: a name,
+VALUE is a number, none, on, off or a name, as `param list` shows; for the law one of --law: a name, \
 or a TOML file with speed_m_s and gain_nm_s_rad. It is lost at power-off unless stored by `param store`.
 
 Examples:
@@ -45,7 +45,7 @@ Examples:
   sim-host param set law cl2:3 --port /dev/ttyACM0";
 
 const IMPORT_HELP: &str = "\
-All keys and values are checked before anything is set. If the board then rejects one, what was set
+All keys and values are checked before anything is set. If the board then rejects one, what was set \
 before is restored. A passed polarity check is never imported.
 
 Example:

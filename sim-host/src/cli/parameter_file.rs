@@ -7,8 +7,8 @@ use std::fmt::Write;
 
 /// Description of the files, for help texts.
 pub(super) const HELP: &str = "\
-FILE is TOML: `law`, a name as in --law or a table of speed_m_s and gain_nm_s_rad, and a table
-`parameters` of names and values as in --set. Either can be missing, and any parameter, but not all. An
+FILE is TOML: `law`, a name as in --law or a table of speed_m_s and gain_nm_s_rad, and a table \
+`parameters` of names and values as in --set. Either can be missing, and any parameter, but not all. An \
 export also has `count` and `checksum`; to edit it by hand, delete both lines, or it is rejected.";
 
 /// The text of a file with all settings of a board; `remark` is its first line.

@@ -14,9 +14,9 @@ use crate::scenario::{Scenario, seed};
 use std::path::PathBuf;
 
 pub(super) const EXAMPLES: &str = "\
-The experiment of a rider identification, with a rider that is known. Columns: time_s,
-lateral_force_n, steer_torque_nm (with --steer-pulse), steer_rad, roll_rad, roll_rate_rad_s,
-speed_m_s. Right is positive; force and torque act from their line to the next. Without options
+The experiment of a rider identification, with a rider that is known. Columns: time_s, \
+lateral_force_n, steer_torque_nm (with --steer-pulse), steer_rad, roll_rad, roll_rate_rad_s, \
+speed_m_s. Right is positive; force and torque act from their line to the next. Without options \
 for noise and drift there is none.
 
 Examples:

@@ -22,9 +22,9 @@ pub(super) fn help() -> String {
     let (logs, maps) = (CAN_LOGS.join(", "), SHIPPED.map(|(name, _)| name).join(", "));
     format!(
         "\
-FILE is a table of samples with named columns (also gzipped), such as the output of `monitor --csv`, a recording of
-CAN frames ({logs}) with its DBC, or frames of `ride --frames` (81 bytes each).
-A map assigns the columns to sensors; see docs/replay.md. Built-in maps: {maps}.
+FILE is a table of samples with named columns (also gzipped), such as the output of `monitor --csv`, a recording of \
+CAN frames ({logs}) with its DBC, or frames of `ride --frames` (81 bytes each). The table of `ride --csv` has no \
+samples. A map assigns the columns to sensors; see docs/replay.md. Built-in maps: {maps}. \
 Replay is open loop: the computed torque did not act on the recorded bicycle.
 
 {EXAMPLES}"

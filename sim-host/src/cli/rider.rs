@@ -33,7 +33,7 @@ Examples:
   sim-host rider show hess --csv hess.csv";
 
 const MERGE_HELP: &str = "\
-The files' own groups, best_runs, regression and note are left out; gains, delay, neuromuscular
+The files' own groups, best_runs, regression and note are left out; gains, delay, neuromuscular \
 dynamics and bicycle must agree.
 
 Examples:

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 const EXAMPLES: &str = "\
-KEY is the name of an option below, or a word in braces in an option's value. VALUES are words
+KEY is the name of an option below, or a word in braces in an option's value. VALUES are words \
 and ranges: A:B:STEP, A:B/N (N evenly spaced values), A:B/logN (evenly in the logarithm).
 
 Examples:

@@ -9,8 +9,8 @@ use crate::weave::shape::Beside;
 use std::path::PathBuf;
 
 const WEAVE_EXAMPLES: &str = "\
-A file is a CSV table with a column of time stamps (seconds, or dates with a time) and columns of
-the gyro's rates, recorded after a disturbance of a bicycle rolling without a rider. Repeats at one
+A file is a CSV table with a column of time stamps (seconds, or dates with a time) and columns of \
+the gyro's rates, recorded after a disturbance of a bicycle rolling without a rider. Repeats at one \
 gain and speed are pooled.
 
 Examples:

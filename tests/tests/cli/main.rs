@@ -14,6 +14,7 @@ mod drawn_riders;
 mod examples;
 mod falls;
 mod identify;
+mod help;
 mod identify_loop;
 mod identify_report;
 mod identify_rider;

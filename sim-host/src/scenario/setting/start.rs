@@ -90,7 +90,7 @@ pub const ADAPTIVE: &[Setting] = &[Setting {
     name: "adaptive-speeds",
     key: "search.adaptive_speeds",
     value: "TOLERANCE",
-    help: "Add speeds between the given ones where the outline bends or jumps by more than TOLERANCE times the largest height            [without a value: 0.01]",
+    help: "Add speeds between the given ones where the outline bends or jumps by more than TOLERANCE times the largest height [without a value: 0.01]",
     alone: Some("0.01"),
     hyphen: false,
     set: |s, text| {
