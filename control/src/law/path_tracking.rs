@@ -3,7 +3,7 @@
 //! Full state feedback of roll, steer, their rates, heading error, lateral error and its integral, with gains from a
 //! table over speed. A bicycle must first steer away from its target; feedback of the errors alone cannot do that and
 //! stay upright, state feedback can. The gains of [`PathTracking::default`] are computed by `sim_host::tracking`: the
-//! linear-quadratic regulator of the linear bicycle with the law `h` in the loop.
+//! linear-quadratic regulator of the linear bicycle with the law `h-cut` in the loop, which is zero at the highest of these speeds.
 //!
 //! Tracking has the lowest priority. It is bounded in size and slope, and fades out while the rider pushes or turns
 //! against the assist, below its lowest speed, and when the path is lost. Its integral is frozen whenever a limit, the
