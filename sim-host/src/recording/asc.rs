@@ -74,12 +74,7 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
             Err(error) => damaged(error),
         }
     }
-    frames.remarks = remarks.done();
-    match (frames.is_empty(), frames.remarks.first()) {
-        (true, Some(first)) => Err(first.clone()),
-        (true, None) => Err(Remark::of_file("no data frame in it".to_owned())),
-        _ => Ok(frames),
-    }
+    frames.checked(remarks)
 }
 
 /// Radix of a header's `base` line, and whether its time stamps are relative.

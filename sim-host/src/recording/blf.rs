@@ -35,12 +35,7 @@ pub fn parse(bytes: &[u8]) -> Result<Frames, Remark> {
     let mut remarks = Remarks::default();
     let mut log = Log { start_s: start_s(bytes), frames: &mut frames, remarks: &mut remarks };
     log.containers(&bytes[head..]);
-    frames.remarks = remarks.done();
-    match (frames.is_empty(), frames.remarks.first()) {
-        (true, Some(first)) => Err(first.clone()),
-        (true, None) => Err(Remark::of_file("no data frame in it".to_owned())),
-        _ => Ok(frames),
-    }
+    frames.checked(remarks)
 }
 
 /// A file while it is read.

@@ -76,12 +76,7 @@ pub fn parse(text: &str) -> Result<Frames, Remark> {
             "the time stamp falls, so they may count from frame to frame (`candump -t d`); record with `candump -L`",
         ));
     }
-    frames.remarks = remarks.done();
-    match (frames.is_empty(), frames.remarks.first()) {
-        (true, Some(first)) => Err(first.clone()),
-        (true, None) => Err(Remark::of_file("no data frame in it".to_owned())),
-        _ => Ok(frames),
-    }
+    frames.checked(remarks)
 }
 
 fn at(line: u64, what: &str) -> Remark {

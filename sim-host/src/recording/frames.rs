@@ -1,6 +1,7 @@
 //! Data frames of CAN buses, in the order of the file.
 
 use super::Remark;
+use super::remarks::Remarks;
 use std::collections::HashMap;
 use std::fmt::{self, Display};
 
@@ -83,6 +84,19 @@ impl Frames {
         let data = &data[..data.len().min(MOST_BYTES)];
         self.heads.push(Head { time_s, line, at: self.bytes.len(), id, bus, length: data.len() as u8 });
         self.bytes.extend_from_slice(data);
+    }
+
+    /// The frames of a whole file, with the remarks about it.
+    ///
+    /// # Errors
+    /// There is no data frame: the first remark, if there is one.
+    pub(super) fn checked(self, remarks: Remarks) -> Result<Self, Remark> {
+        let frames = Self { remarks: remarks.done(), ..self };
+        match (frames.is_empty(), frames.remarks.first()) {
+            (true, Some(first)) => Err(first.clone()),
+            (true, None) => Err(Remark::of_file("no data frame in it".to_owned())),
+            _ => Ok(frames),
+        }
     }
 
     /// Number of data frames.
