@@ -59,44 +59,13 @@ impl RequestedCase {
 }
 
 pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
-    let mut requested = Vec::new();
-    let mut ridden = false;
-    for text in &args.cases {
-        match text.split_once('=').filter(|_| !std::path::Path::new(text).is_file()) {
-            Some((label, options)) => {
-                let case = options::parsed(options).map_err(|e| named(label, e))?;
-                ridden |= case.is_ridden();
-                let setup = setup(&case).map_err(|e| named(label, e))?;
-                requested.push(RequestedCase::Compute(label.into(), Box::new(setup)));
-            }
-            None => {
-                let (case, axis) = read(text)?;
-                requested.push(RequestedCase::Done(case, axis));
-            }
-        }
-    }
+    let (requested, ridden) = requested(&args.cases)?;
     let mut scenario = Scenario { search: common_search(&requested)?, ..Scenario::default() };
     args.search.apply(&mut scenario)?;
     let search = scenario.search.resolve(ridden).map_err(|e| named_option(&scenario, &e))?;
     let own_search = SearchChoice { speeds: Some(Speeds::List(search.speeds.clone())), ..scenario.search };
     let resolved = ResolvedSearch::new(&search);
-    for (i, one) in requested.iter().enumerate() {
-        if let RequestedCase::Done(case, axis) = one
-            && *axis != resolved.axis
-        {
-            return Err(format!("{}: its axis is {axis}, --axis is {}", case.label, resolved.axis).into());
-        }
-        let (label, capped) = (one.label(), format!("{}{CAPPED}", one.label()));
-        if requested[..i].iter().any(|other| other.label() == label) {
-            return Err(format!("two cases are called `{label}`; each needs a label of its own").into());
-        }
-        if requested.iter().any(|other| other.label() == capped) {
-            return Err(format!(
-                "`{capped}` is a column of the case `{label}` in the table; choose another label"
-            )
-            .into());
-        }
-    }
+    check(&requested, &resolved.axis)?;
     let outputs = args.outputs.open(Further::default())?;
     interrupt::install();
     let pool = args.threads.pool()?;
@@ -161,6 +130,49 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     }
     complain("interrupted: finished results are kept");
     Ok(Ended::Interrupted)
+}
+
+/// The cases as given, and whether a rider steers one that is to be computed.
+fn requested(cases: &[String]) -> Result<(Vec<RequestedCase>, bool), Failure> {
+    let mut requested = Vec::new();
+    let mut ridden = false;
+    for text in cases {
+        match text.split_once('=').filter(|_| !std::path::Path::new(text).is_file()) {
+            Some((label, options)) => {
+                let case = options::parsed(options).map_err(|e| named(label, e))?;
+                ridden |= case.is_ridden();
+                let setup = setup(&case).map_err(|e| named(label, e))?;
+                requested.push(RequestedCase::Compute(label.into(), Box::new(setup)));
+            }
+            None => {
+                let (case, axis) = read(text)?;
+                requested.push(RequestedCase::Done(case, axis));
+            }
+        }
+    }
+    Ok((requested, ridden))
+}
+
+/// Rejects a case of a file with another axis, and labels that are not distinct columns of the table.
+fn check(requested: &[RequestedCase], chosen: &str) -> Result<(), Failure> {
+    for (i, one) in requested.iter().enumerate() {
+        if let RequestedCase::Done(case, axis) = one
+            && axis != chosen
+        {
+            return Err(format!("{}: its axis is {axis}, --axis is {chosen}", case.label).into());
+        }
+        let (label, capped) = (one.label(), format!("{}{CAPPED}", one.label()));
+        if requested[..i].iter().any(|other| other.label() == label) {
+            return Err(format!("two cases are called `{label}`; each needs a label of its own").into());
+        }
+        if requested.iter().any(|other| other.label() == capped) {
+            return Err(format!(
+                "`{capped}` is a column of the case `{label}` in the table; choose another label"
+            )
+            .into());
+        }
+    }
+    Ok(())
 }
 
 /// The search of the scenarios of the cases, if they have one; it must be the same in all that have one.

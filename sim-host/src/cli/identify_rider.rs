@@ -45,69 +45,14 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     if many && args.report.is_some() {
         return Err("--report: a report is of one record; give one, or --results".into());
     }
-    let outputs = args.outputs.open(Further::default())?;
-    let out = args.out.as_deref().map(Output::create).transpose()?;
-    if let Some(out) = &out {
-        outputs.refuse_place_of("--out", out)?;
-    }
-    let report = args.report.as_deref().map(Output::create).transpose()?;
-    if let Some(report) = &report {
-        outputs.refuse_place_of("--report", report)?;
-        if out.as_ref().is_some_and(|out| out.collides(report)) {
-            return Err("--out and --report have the same place to write to".into());
-        }
-    }
+    let (outputs, out, report) = places(args)?;
     let store = args.results.as_deref().map(|folder| Store::open(folder, &args.files)).transpose()?;
     interrupt::install_saying(if many {
         "the record under way is given up, finished ones are written"
     } else {
         "the record under way is given up"
     });
-    let bar = progress(outputs.shows_progress(), "identify", 4 * args.files.len(), "stages");
-    let (mut finished, mut refused) = (BTreeMap::new(), BTreeMap::new());
-    let mut open: VecDeque<usize> = (0..args.files.len()).collect();
-    // Records that other processes with the same folder of results identify.
-    let (mut elsewhere, mut reminder) = (VecDeque::new(), Reminder::default());
-    while !interrupt::stopped() {
-        let Some(i) = open.pop_front() else {
-            if elsewhere.is_empty() {
-                break;
-            }
-            open = std::mem::take(&mut elsewhere);
-            if let Some(store) = store.as_ref().filter(|_| reminder.is_due()) {
-                let wait = store.wait(open.iter().map(|i| args.files[*i].as_path()));
-                print_wait(outputs.shows_progress(), &bar, &wait);
-            }
-            std::thread::sleep(LOOK);
-            continue;
-        };
-        let file = &args.files[i];
-        let begins = |_: Stage| bar.inc(1);
-        let of_this = || one(args, &choice, file, store.as_ref(), &begins);
-        let of_one = match &store {
-            None => of_this(),
-            Some(store) => match store.alone(file, of_this)? {
-                Some(of_one) => of_one,
-                None => {
-                    elsewhere.push_back(i);
-                    continue;
-                }
-            },
-        };
-        reminder.over();
-        match of_one {
-            Ok(one) => drop(finished.insert(i, one)),
-            Err(error) if error.downcast_ref() == Some(&FitError::Interrupted) => break,
-            Err(error) if many => {
-                let reason = reason(file, error.as_ref());
-                complain(&format!("{}: not used: {reason}", file.display()));
-                refused.insert(file.display().to_string(), reason);
-            }
-            Err(error) => return Err(format!("{}: {}", file.display(), reason(file, error.as_ref())).into()),
-        }
-    }
-    bar.finish_and_clear();
-    let finished: Vec<Finished> = finished.into_values().collect();
+    let (finished, refused) = each(args, &choice, store.as_ref(), outputs.shows_progress())?;
     if finished.is_empty() {
         if interrupt::stopped() {
             complain("interrupted: no record is finished, nothing is written");
@@ -124,6 +69,78 @@ pub(super) fn run(args: &RiderArgs) -> Result<Ended, Failure> {
     }
     report.map_or(Ok(()), |report| report.finish(page.as_bytes()))?;
     Ok(if interrupt::stopped() { Ended::Interrupted } else { Ended::Done })
+}
+
+/// The places of documents, rider and page, which are distinct.
+fn places(args: &RiderArgs) -> Result<(Outputs, Option<Output>, Option<Output>), Failure> {
+    let outputs = args.outputs.open(Further::default())?;
+    let out = args.out.as_deref().map(Output::create).transpose()?;
+    if let Some(out) = &out {
+        outputs.refuse_place_of("--out", out)?;
+    }
+    let report = args.report.as_deref().map(Output::create).transpose()?;
+    if let Some(report) = &report {
+        outputs.refuse_place_of("--report", report)?;
+        if out.as_ref().is_some_and(|out| out.collides(report)) {
+            return Err("--out and --report have the same place to write to".into());
+        }
+    }
+    Ok((outputs, out, report))
+}
+
+/// Identifies every record, or as many as are finished when Ctrl-C is pressed; of several records, those that can't be used are
+/// left out and returned with the reason.
+fn each(
+    args: &RiderArgs,
+    choice: &IdentifyChoice,
+    store: Option<&Store>,
+    shows_progress: bool,
+) -> Result<(Vec<Finished>, BTreeMap<String, String>), Failure> {
+    let bar = progress(shows_progress, "identify", 4 * args.files.len(), "stages");
+    let (mut finished, mut refused) = (BTreeMap::new(), BTreeMap::new());
+    let mut open: VecDeque<usize> = (0..args.files.len()).collect();
+    // Records that other processes with the same folder of results identify.
+    let (mut elsewhere, mut reminder) = (VecDeque::new(), Reminder::default());
+    while !interrupt::stopped() {
+        let Some(i) = open.pop_front() else {
+            if elsewhere.is_empty() {
+                break;
+            }
+            open = std::mem::take(&mut elsewhere);
+            if let Some(store) = store.filter(|_| reminder.is_due()) {
+                let wait = store.wait(open.iter().map(|i| args.files[*i].as_path()));
+                print_wait(shows_progress, &bar, &wait);
+            }
+            std::thread::sleep(LOOK);
+            continue;
+        };
+        let file = &args.files[i];
+        let begins = |_: Stage| bar.inc(1);
+        let of_this = || one(args, choice, file, store, &begins);
+        let of_one = match store {
+            None => of_this(),
+            Some(store) => match store.alone(file, of_this)? {
+                Some(of_one) => of_one,
+                None => {
+                    elsewhere.push_back(i);
+                    continue;
+                }
+            },
+        };
+        reminder.over();
+        match of_one {
+            Ok(one) => drop(finished.insert(i, one)),
+            Err(error) if error.downcast_ref() == Some(&FitError::Interrupted) => break,
+            Err(error) if args.files.len() > 1 => {
+                let reason = reason(file, error.as_ref());
+                complain(&format!("{}: not used: {reason}", file.display()));
+                refused.insert(file.display().to_string(), reason);
+            }
+            Err(error) => return Err(format!("{}: {}", file.display(), reason(file, error.as_ref())).into()),
+        }
+    }
+    bar.finish_and_clear();
+    Ok((finished.into_values().collect(), refused))
 }
 
 /// Rejects a word that an option's list contains twice.

@@ -31,38 +31,18 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
     let Some((header, at)) = lines.next() else {
         return Err(fails(None, "the file has no line with data"));
     };
-    let separator = separator_of(header);
-    if header.contains('\0') {
-        return Err(fails(Some(at), "is no text in UTF-8"));
-    }
-    // Some loggers write a separator after the last column.
-    let header = header.trim_end();
-    let closed = header.ends_with(separator);
-    let open = |line: &str| -> usize {
-        let line = line.trim_end_matches(' ');
-        line.len() - if closed && line.ends_with(separator) { separator.len_utf8() } else { 0 }
-    };
-    let header = &header[..open(header)];
-    let names = names_of(header, separator).ok_or_else(|| {
-        let what = format!(
-            "a header with the columns' names was expected, not `{}`; add one line with names",
-            shown(header)
-        );
-        fails(Some(at), &what)
-    })?;
-    if let Some(twice) = names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
-        return Err(fails(Some(at), &format!("two columns are called `{}`", twice.1)));
-    }
+    let header = Header::parse(header).map_err(|what| fails(Some(at), &what))?;
+    let separator = header.separator;
 
     let mut columns: Vec<Column> =
-        names.iter().map(|name| Column { name: name.clone(), ..Column::default() }).collect();
+        header.names.iter().map(|name| Column { name: name.clone(), ..Column::default() }).collect();
     // Column of each field of the current lines.
-    let mut places: Vec<usize> = (0..names.len()).collect();
+    let mut places: Vec<usize> = (0..columns.len()).collect();
     let (mut numbers, mut remarks) = (Vec::new(), Remarks::default());
     let ends_whole = text.ends_with('\n');
     let last = text.lines().count() as u64;
     for (line, number) in lines {
-        let line = &line[..open(line)];
+        let line = header.open(line);
         if line.contains('\u{fffd}') || line.contains('\0') {
             remarks.add(PACKED, Some(number), None, || "has bytes that are no text; left out".to_owned());
             continue;
@@ -87,15 +67,12 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
         numbers.push(number);
         for (place, field) in places.iter().zip(fields) {
             let column = &mut columns[*place];
-            let value = if is_blank(field) {
-                None
-            } else {
-                Some(number_of(field).or_else(|| with_comma(field, separator)))
-            };
-            match value {
-                None => {}
-                Some(Some(value)) => *column.values.last_mut().expect("a row") = value,
-                Some(None) => remarks.add(NUMBER, Some(number), Some(&column.name), || {
+            if is_blank(field) {
+                continue;
+            }
+            match number_of(field).or_else(|| with_comma(field, separator)) {
+                Some(value) => *column.values.last_mut().expect("a row") = value,
+                None => remarks.add(NUMBER, Some(number), Some(&column.name), || {
                     format!("`{}` is no number; taken as blank", shown(field))
                 }),
             }
@@ -110,6 +87,41 @@ pub fn parse(text: &str) -> Result<Recording, Remark> {
     }
     let group = Group { name: String::new(), times_s: None, lines: numbers, columns };
     Ok(Recording { groups: vec![group], remarks: remarks.done() })
+}
+
+/// A header line.
+struct Header {
+    separator: char,
+    /// Whether a separator follows the last column, which some loggers write.
+    closed: bool,
+    names: Vec<String>,
+}
+
+impl Header {
+    /// Parses a header, or says what is wrong with it.
+    fn parse(line: &str) -> Result<Self, String> {
+        let separator = separator_of(line);
+        if line.contains('\0') {
+            return Err("is no text in UTF-8".into());
+        }
+        let line = line.trim_end();
+        let unnamed = Self { separator, closed: line.ends_with(separator), names: Vec::new() };
+        let line = unnamed.open(line);
+        let names = names_of(line, separator).ok_or_else(|| {
+            let line = shown(line);
+            format!("a header with the columns' names was expected, not `{line}`; add one line with names")
+        })?;
+        match names.iter().enumerate().find(|(i, name)| names[..*i].contains(name)) {
+            Some((_, twice)) => Err(format!("two columns are called `{twice}`")),
+            None => Ok(Self { names, ..unnamed }),
+        }
+    }
+
+    /// A line without the separator after its last column.
+    fn open<'a>(&self, line: &'a str) -> &'a str {
+        let shorter = line.trim_end_matches(' ');
+        shorter.strip_suffix(self.separator).filter(|_| self.closed).unwrap_or(shorter)
+    }
 }
 
 /// The separator of a line: the most frequent of comma, semicolon and tab.

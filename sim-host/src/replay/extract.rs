@@ -227,6 +227,53 @@ pub(super) fn times(group: &Group, map: &Map, own: Option<&str>) -> Result<Vec<f
     }
 }
 
+/// The usable samples of rows, in rising order of time.
+#[derive(Default)]
+struct Rising {
+    samples: Vec<Sample>,
+    /// Row of each sample.
+    rows: Vec<usize>,
+    /// Rows far ahead of their neighbours, each with its time \[s\].
+    ahead: Vec<(usize, f64)>,
+    /// Number of rows without a later time than the sample before.
+    back: u64,
+    /// The first of these: its row, and the times of the sample before and its own \[s\].
+    first_back: Option<(usize, f64, f64)>,
+}
+
+/// Selects the samples of rows in rising order of time. With `repeats_s` a sample that is less than this later than the last one
+/// is the same, read again.
+fn rising(of_rows: impl Iterator<Item = Sample>, repeats_s: Option<f64>) -> Rising {
+    let Rising { mut samples, mut rows, mut ahead, mut back, mut first_back } = Rising::default();
+    let usable =
+        |(_, sample): &(usize, Sample)| sample.t_s.is_finite() && !sample.value.iter().any(|x| x.is_nan());
+    for (row, sample) in of_rows.enumerate().filter(usable) {
+        let t_s = sample.t_s;
+        match samples.last() {
+            // The same sample again, some periods older.
+            Some(last) if repeats_s.is_some_and(|repeats_s| t_s < last.t_s + repeats_s) => {}
+            // One row far ahead of its neighbours: its time is wrong, not theirs.
+            Some(last)
+                if t_s < last.t_s - LEAP_S && samples.iter().nth_back(1).is_none_or(|b| b.t_s < t_s) =>
+            {
+                ahead.push((rows.pop().unwrap_or(row), last.t_s));
+                samples.pop();
+                rows.push(row);
+                samples.push(sample);
+            }
+            Some(last) if t_s <= last.t_s => {
+                back += 1;
+                first_back.get_or_insert((row, last.t_s, t_s));
+            }
+            _ => {
+                rows.push(row);
+                samples.push(sample);
+            }
+        }
+    }
+    Rising { samples, rows, ahead, back, first_back }
+}
+
 /// Reads a sensor's samples; unusable ones are left out with a remark. `None` if no row has a sample.
 #[allow(clippy::too_many_arguments, reason = "one call; each is a different thing")]
 fn take(
@@ -249,11 +296,8 @@ fn take(
     };
     let ages = signal.age.as_ref().map(of_age).transpose()?;
     let turns = signal.turns();
-    let mut samples: Vec<Sample> = Vec::new();
     let line_of = |row: usize| group.lines.get(row).copied();
-    let (mut rows, mut ahead): (Vec<usize>, Vec<(usize, f64)>) = Default::default();
-    let (mut back, mut first_back) = (0_u64, None);
-    for (row, time_s) in times.iter().enumerate() {
+    let at = |row: usize| {
         let cell = |axis: &Axis<'_>| match axis {
             Axis::Column(column) => column.values[row],
             Axis::Constant(value) => *value,
@@ -264,32 +308,10 @@ fn take(
         }
         let value = if axes_of(sensor) == 3 { turns.map(|(from, sign)| sign * own[from]) } else { own };
         let age_s = ages.map_or(0.0, |ages| ages.values[row] * period_s);
-        let t_s = time_s - age_s + signal.late_s;
-        if !t_s.is_finite() || value.iter().any(|x| x.is_nan()) {
-            continue;
-        }
-        match samples.last() {
-            // The same sample again, some periods older.
-            Some(last) if ages.is_some() && t_s < last.t_s + 0.5 * period_s => {}
-            // One row far ahead of its neighbours: its time is wrong, not theirs.
-            Some(last)
-                if t_s < last.t_s - LEAP_S && samples.iter().nth_back(1).is_none_or(|b| b.t_s < t_s) =>
-            {
-                ahead.push((rows.pop().unwrap_or(row), last.t_s));
-                samples.pop();
-                rows.push(row);
-                samples.push(Sample { t_s, value });
-            }
-            Some(last) if t_s <= last.t_s => {
-                back += 1;
-                first_back.get_or_insert((line_of(row), last.t_s, t_s));
-            }
-            _ => {
-                rows.push(row);
-                samples.push(Sample { t_s, value });
-            }
-        }
-    }
+        Sample { t_s: times[row] - age_s + signal.late_s, value }
+    };
+    let repeats_s = ages.map(|_| 0.5 * period_s);
+    let Rising { samples, rows, ahead, back, first_back } = rising((0..times.len()).map(at), repeats_s);
     let mut say = |line, what: String| {
         // Sensors of one row share this remark.
         let same = all.remarks.iter_mut().find(|noted| noted.line == line && noted.what.ends_with(&what));
@@ -307,11 +329,11 @@ fn take(
     let times: Vec<f64> = samples.iter().map(|sample| sample.t_s).collect();
     let leaps = leaps(&times, |at| line_of(rows[at]));
     leaps.iter().for_each(|leap| say(leap.line, leap.to_string()));
-    if let Some((line, from, to)) = first_back {
+    if let Some((row, from, to)) = first_back {
         let verb = if from == to { "stands at" } else { "goes back from" };
         let to = if from == to { String::new() } else { format!(" to {to}") };
         let what = format!("time {verb} {from} s{to}; {back} rows without a later time left out");
-        say(line, what);
+        say(line_of(row), what);
     }
     all.leaps.extend(leaps);
     if samples.len() < 2 {

@@ -137,6 +137,43 @@ fn gridded(signal: &Timed, start_s: f64, sample_s: f64, count: usize, hold: Hold
     Gridded { values, valid }
 }
 
+/// A disturbance with its median in gaps, the likeliest value: between pulses there is none.
+fn undisturbed_in_gaps(signal: &Timed, mut gridded: Gridded) -> Gridded {
+    let middle = median(signal.iter().map(|(_, value)| *value));
+    let gaps = gridded.values.iter_mut().zip(&gridded.valid).filter(|(_, valid)| !**valid);
+    gaps.for_each(|(value, _)| *value = middle);
+    gridded
+}
+
+/// Marks the samples that respond to a missing disturbance as unknown; says how many are missing, if any.
+fn after_gaps(what: &str, of: &Gridded, sample_s: f64, unknown: &mut [bool]) -> Option<String> {
+    let mut since = f64::INFINITY;
+    for (unknown, valid) in unknown.iter_mut().zip(&of.valid) {
+        since = if *valid { since + sample_s } else { 0.0 };
+        *unknown |= since <= UNKNOWN_AFTER_S;
+    }
+    let (missing, count) = (of.valid.iter().filter(|valid| !**valid).count(), of.valid.len());
+    (missing > 0).then(|| {
+        format!(
+            "{what}: {missing} of {count} samples missing; the response to them, until {UNKNOWN_AFTER_S} s later, is left out"
+        )
+    })
+}
+
+/// The forward speed \[m/s\], given or else the mean of the recorded one, and the standard deviation of the recorded one \[m/s\].
+fn forward_speed(given_m_s: Option<f64>, recorded: &Timed) -> Result<(f64, Option<f64>), RecordError> {
+    let count = recorded.len() as f64;
+    let mean = recorded.iter().map(|(_, v)| v).sum::<f64>() / count;
+    let speed_m_s = match (given_m_s, recorded.is_empty()) {
+        (Some(speed), _) => speed,
+        (None, false) => mean,
+        (None, true) => return Err(RecordError::NoSpeed),
+    };
+    within_key("speed_m_s", "forward speed (m/s)", speed_m_s, 0.1, 30.0)?;
+    let deviation = (recorded.iter().map(|(_, v)| (v - mean).powi(2)).sum::<f64>() / count).sqrt();
+    Ok((speed_m_s, (!recorded.is_empty()).then_some(deviation)))
+}
+
 /// Brings the signals to equal intervals: the median time between two samples of the steer angle, or of the first signal
 /// to fit.
 ///
@@ -197,35 +234,13 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
     }
     let count = (duration_s * rate_hz + 0.5) as usize + 1;
     let grid = |signal: &Timed, hold| gridded(signal, start_s, sample_s, count, hold);
-    let disturbed = [&force, &torque].map(|signal| {
-        let mut gridded = grid(signal, settings.hold);
-        // Between pulses there is none, so in a gap nothing is likelier than the value before it.
-        let middle = median(signal.iter().map(|(_, value)| *value));
-        gridded
-            .values
-            .iter_mut()
-            .zip(&gridded.valid)
-            .filter(|(_, valid)| !**valid)
-            .for_each(|(value, _)| *value = middle);
-        gridded
-    });
+    let disturbed = [&force, &torque].map(|signal| undisturbed_in_gaps(signal, grid(signal, settings.hold)));
     let mut unknown = vec![false; count];
     for (what, of, recorded) in
         [("lateral force", &disturbed[0], &force), ("steer torque", &disturbed[1], &torque)]
     {
-        if recorded.is_empty() {
-            continue;
-        }
-        let missing = of.valid.iter().filter(|valid| !**valid).count();
-        if missing > 0 {
-            remarks.push(format!(
-                "{what}: {missing} of {count} samples missing; the response to them, until {UNKNOWN_AFTER_S} s later, is left out"
-            ));
-        }
-        let mut since = f64::INFINITY;
-        for (k, valid) in of.valid.iter().enumerate() {
-            since = if *valid { since + sample_s } else { 0.0 };
-            unknown[k] |= since <= UNKNOWN_AFTER_S;
+        if !recorded.is_empty() {
+            remarks.extend(after_gaps(what, of, sample_s, &mut unknown));
         }
     }
     let mut fitted = Vec::new();
@@ -242,18 +257,10 @@ pub fn prepare(signals: &Perturbed, settings: &Settings) -> Result<Prepared, Rec
         }
         fitted.push(Measured { signal: *signal, values, valid });
     }
-    let mean = speed.iter().map(|(_, v)| v).sum::<f64>() / speed.len() as f64;
-    let speed_m_s = match (settings.speed_m_s, speed.is_empty()) {
-        (Some(speed), _) => speed,
-        (None, false) => mean,
-        (None, true) => return Err(RecordError::NoSpeed),
-    };
-    within_key("speed_m_s", "forward speed (m/s)", speed_m_s, 0.1, 30.0)?;
-    let deviation = (speed.iter().map(|(_, v)| (v - mean).powi(2)).sum::<f64>() / speed.len() as f64).sqrt();
+    let (speed_m_s, speed_deviation_m_s) = forward_speed(settings.speed_m_s, &speed)?;
     let samples = (0..count).map(|k| [0, 1].map(|i| disturbed[i].values[k])).collect();
     let record =
         Record { disturbances: Disturbances { sample_s, samples, hold: settings.hold }, measured: fitted };
-    let speed_deviation_m_s = (!speed.is_empty()).then_some(deviation);
     remarks.extend(doubts(&record, speed_m_s, speed_deviation_m_s));
     let recorded = if settings.speed_m_s.is_none() { grid(&speed, Hold::Linear).values } else { Vec::new() };
     Ok(Prepared { record, speeds_m_s: recorded, start_s, speed_m_s, speed_deviation_m_s, remarks })
