@@ -7,9 +7,14 @@ use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
+/// Target directory of the program, the same with any `CARGO_TARGET_DIR`: `sim-host` starts the program from there.
+fn target_dir() -> PathBuf {
+    paths::root().join("target")
+}
+
 /// Path of the built program.
 pub fn program() -> PathBuf {
-    paths::root().join("target/virtual-board/virtual-board")
+    target_dir().join("virtual-board/virtual-board")
 }
 
 /// Builds the program and the images it runs.
@@ -18,8 +23,14 @@ pub fn program() -> PathBuf {
 /// Cargo failed.
 pub fn build() -> Result<()> {
     image::build("board-vesc6")?;
+    progress::must_whenever(&mut cargo_build())
+}
+
+/// The command that builds [`program`].
+pub fn cargo_build() -> Command {
     let mut cargo = cargo("build");
-    progress::must_whenever(cargo.args(["--bin", "virtual-board", "--profile", "virtual-board"]))
+    cargo.args(["--bin", "virtual-board", "--profile", "virtual-board", "--target-dir"]).arg(target_dir());
+    cargo
 }
 
 /// Runs the built program with these arguments until it ends.

@@ -2,18 +2,31 @@
 
 use crate::bed::product;
 use sim_host::board::serial::Serial;
-use sim_host::board::virtual_board::VirtualBoard;
+use sim_host::board::virtual_board::{VirtualBoard, default_program};
 use sim_host::board::{Client, RetryPolicy};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
+use xtask::virtual_board::{cargo_build, program};
 
 /// For a board that starts on a very busy machine: requests sent before it listens are lost, and repeated.
 const TIMEOUT: RetryPolicy = RetryPolicy { answer: Duration::from_millis(400), tries: 1500 };
 
 fn virtual_board(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_virtual-board")).args(arguments).output().expect("it can be started")
+}
+
+/// Situation: the command that builds the program, in any environment.
+/// Action: compare its target directory with the places where `cargo xtask virtual-board` and `sim-host` look.
+/// Must hold: the program is built where both start it, whatever `CARGO_TARGET_DIR` says.
+#[test]
+fn it_is_built_where_it_is_started() {
+    let build = cargo_build();
+    let into =
+        build.get_args().skip_while(|word| *word != "--target-dir").nth(1).expect("a target directory");
+    let built = Path::new(into).join("virtual-board/virtual-board");
+    assert_eq!([default_program(), program()], [built.clone(), built]);
 }
 
 /// Situation: wrong options, and files that are no images.
