@@ -20,12 +20,12 @@ pub enum Task {
 pub const HEARTBEAT_TIMEOUT_MS: u32 = 50;
 
 /// Longest suspension of the supervision \[ms\]. The longest store erases five sectors of 16 KiB: one for each of two
-/// items, then, after damage, all three. Each takes at most 0.5 s (data sheet of the STM32F405, table 40), and then
-/// 0.3 s in which control catches up on its steps; writing takes 0.1 s.
-pub const SUSPEND_MS: u32 = 5000;
+/// items, then, after damage, all three. Each takes at most 0.5 s (data sheet of the STM32F405, table 40), and then at
+/// most 0.6 s in which control catches up on its steps; searching and writing take at most 0.2 s each time.
+pub const SUSPEND_MS: u32 = 8000;
 
 static LAST_MS: [AtomicU32; 3] = [const { AtomicU32::new(0) }; 3];
-/// Set while flash is erased: the chip halts, so missing reports are ignored.
+/// Set during a store: it searches the flash, and the chip halts, so missing reports are ignored.
 static SUSPENDED: AtomicBool = AtomicBool::new(false);
 /// Start of the suspension \[ms\].
 static SUSPENDED_FROM_MS: AtomicU32 = AtomicU32::new(0);
@@ -51,8 +51,7 @@ impl Task {
 /// The first of `tasks` whose last report is too old.
 pub fn silent(tasks: &[Task]) -> Option<Task> {
     let now = now_ms();
-    let suspended_for_ms = now.wrapping_sub(SUSPENDED_FROM_MS.load(Ordering::Relaxed));
-    if SUSPENDED.load(Ordering::Relaxed) && suspended_for_ms <= SUSPEND_MS {
+    if is_suspended() {
         return None;
     }
     let last = |task: Task| LAST_MS[task as usize].load(Ordering::Relaxed);
@@ -64,6 +63,12 @@ pub fn silent(tasks: &[Task]) -> Option<Task> {
 /// Starts the supervision; the board's start takes longer than the timeout of a task.
 pub fn begin() {
     suspend(false);
+}
+
+/// Whether the supervision is suspended, and not for longer than [`SUSPEND_MS`].
+pub fn is_suspended() -> bool {
+    let suspended_for_ms = now_ms().wrapping_sub(SUSPENDED_FROM_MS.load(Ordering::Relaxed));
+    SUSPENDED.load(Ordering::Relaxed) && suspended_for_ms <= SUSPEND_MS
 }
 
 /// Suspends the supervision for at most [`SUSPEND_MS`], or resumes it. All tasks count as having just reported.

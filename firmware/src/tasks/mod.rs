@@ -15,7 +15,8 @@
 //! | `sense`, `drive` | sensors and motor, once per control step |
 //! | `report` | one log line |
 //! | `serial::read`, `serial::write` | bytes of the serial link |
-//! | `flash` | range for the parameters; extends the watchdog's timeout while it erases |
+//! | `flash` | range for the parameters |
+//! | `StoreGuard` | while it exists: motor's bridge open, watchdog's timeout extended |
 //! | `feed_watchdog`, `heartbeat_lost` | watchdog; whether a task's heartbeat is dropped by fault injection, else false |
 //! | `reset_cause`, `outputs_off`, `end` | cause of the start; outputs off; last log line and restart |
 //!

@@ -133,6 +133,7 @@ impl StoredConfig {
     /// As of [`NotStored`].
     pub async fn save_alignment(&mut self, alignment: &Alignment) -> Result<(), NotStored> {
         let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
+        let _storing = Storing::begin();
         store.save_alignment(alignment, self.room).await
     }
 
@@ -142,10 +143,28 @@ impl StoredConfig {
     /// As of [`NotStored`].
     pub async fn save(&mut self, config: &Config) -> Result<(), NotStored> {
         let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
+        let _storing = Storing::begin();
+        store.save(config, self.room).await
+    }
+}
+
+/// Guard of a store: while it exists the motor's bridge is open, the watchdog's timeout extended and the supervision
+/// suspended.
+struct Storing {
+    _board: board::StoreGuard,
+}
+
+impl Storing {
+    fn begin() -> Self {
+        let board = board::StoreGuard::begin();
         heartbeat::suspend(true);
-        let stored = store.save(config, self.room).await;
+        Self { _board: board }
+    }
+}
+
+impl Drop for Storing {
+    fn drop(&mut self) {
         heartbeat::suspend(false);
-        stored
     }
 }
 

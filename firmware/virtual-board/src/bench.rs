@@ -11,7 +11,7 @@ use crate::image::Functions;
 use crate::inject::put_back;
 use crate::log::{self, Log, Rtt};
 use crate::wiring::Wiring;
-use rigless::emulator::{self, Driver, Host, Settled, Start, Stop};
+use rigless::emulator::{self, AccessKind, Driver, Host, Settled, Start, Stop};
 use rigless::image::Image;
 use rigless::session::{Reset, Session};
 use rigless::soc::Width;
@@ -26,6 +26,9 @@ const LOOK_NS: u64 = 1_000_000;
 
 /// Flash range of the parameters, which `memory.x` keeps free.
 const STORE: std::ops::Range<u64> = 0x0800_4000..0x0801_0000;
+
+/// Address of the watchdog's key register, and the key that restarts its count.
+const WATCHDOG_FEED: (u64, u64) = (0x4000_3000, 0xaaaa);
 
 /// Size of that range \[bytes\].
 pub const STORE_BYTES: usize = (STORE.end - STORE.start) as usize;
@@ -103,6 +106,12 @@ impl Driver<Vesc6> for Stepper {
             if troubled && session.board().troubled_by.is_none() {
                 session.board_mut().troubled_by = Some(counter as u32);
             }
+        }
+        if let Settled::Access { access, .. } = settled
+            && access.kind == AccessKind::Write
+            && (access.address, access.value) == WATCHDOG_FEED
+        {
+            session.board_mut().watchdog_feeds.push(access.virtual_time.0);
         }
         if let Settled::Hit(hit) = settled {
             session.board_mut().hits.push((hit.at.0, hit.address as u32));

@@ -61,6 +61,8 @@ pub struct Vesc6 {
     pub(crate) troubled_by: Option<u32>,
     /// Executions of replaced instructions: time \[ns\] and address.
     pub hits: Vec<(u64, u32)>,
+    /// Times at which the program restarted the watchdog's count \[ns\].
+    pub watchdog_feeds: Vec<u64>,
     pub(crate) damage: Vec<Damage>,
     memory: Memory,
     options: Options,
@@ -83,6 +85,7 @@ impl Vesc6 {
             last_access: 0,
             troubled_by: None,
             hits: Vec::new(),
+            watchdog_feeds: Vec::new(),
             damage: Vec::new(),
             memory: Memory::new()?,
             options,

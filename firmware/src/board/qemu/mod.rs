@@ -25,7 +25,7 @@ pub use flash::{Flash, flash};
 pub use reset::{outputs_off, reset_cause, restarts};
 pub use semihosting::Exit;
 pub use sensors::{drive, sense};
-pub use watchdog::feed_watchdog;
+pub use watchdog::{StoreGuard, feed_watchdog};
 
 use crate::telemetry::Telemetry;
 

@@ -7,7 +7,35 @@ use crate::tasks::WATCHDOG;
 use core::sync::atomic::{AtomicU32, Ordering};
 use link::report::ResetCause;
 
+/// Timeouts \[ms\]: the usual one, and that in a store, as on the board.
+const SHORT_MS: u32 = WATCHDOG.as_millis() as u32;
+const EXTENDED_MS: u32 = 2000;
+
 static FED_MS: AtomicU32 = AtomicU32::new(0);
+static TIMEOUT_MS: AtomicU32 = AtomicU32::new(SHORT_MS);
+
+/// Guard of a store: while it exists the timeout is extended.
+pub struct StoreGuard(());
+
+impl StoreGuard {
+    /// Extends the timeout.
+    pub fn begin() -> Self {
+        set_timeout(EXTENDED_MS);
+        Self(())
+    }
+}
+
+impl Drop for StoreGuard {
+    fn drop(&mut self) {
+        set_timeout(SHORT_MS);
+    }
+}
+
+/// Sets the timeout and restarts the count.
+fn set_timeout(timeout_ms: u32) {
+    feed_watchdog();
+    TIMEOUT_MS.store(timeout_ms, Ordering::Relaxed);
+}
 
 /// Restarts the watchdog's timeout.
 pub fn feed_watchdog() {
@@ -17,7 +45,7 @@ pub fn feed_watchdog() {
 /// Resets if the watchdog was not fed within its timeout.
 pub(super) fn check(now_ms: u32) {
     let hungry_ms = now_ms.saturating_sub(FED_MS.load(Ordering::Relaxed));
-    if u64::from(hungry_ms) > WATCHDOG.as_millis() {
+    if hungry_ms > TIMEOUT_MS.load(Ordering::Relaxed) {
         if reset::does_restart() {
             reset::reset(ResetCause::Watchdog)
         }

@@ -2,7 +2,8 @@
 //! sheet of the STM32F427), and some time is left. The brown-out reset is below it: 2.8 V if the option bytes are set
 //! so; 168 MHz and programming by words need 2.7 V (data sheet of the STM32F405).
 
-use super::flash::Standstill;
+use super::flash::FlashStall;
+use super::watchdog;
 use embassy_stm32::interrupt;
 use embassy_stm32::interrupt::InterruptExt;
 use embassy_stm32::pac::{EXTI, FLASH, PWR};
@@ -45,7 +46,8 @@ pub fn raise_level() {
     if FLASH.optcr().read().bor_lev() == LEVEL_3 {
         return;
     }
-    let _standstill = Standstill::begin();
+    watchdog::feed_watchdog();
+    let _stall = FlashStall::begin();
     KEYS.into_iter().for_each(|key| FLASH.optkeyr().write_value(key));
     while FLASH.sr().read().bsy() {}
     FLASH.optcr().modify(|w| w.set_bor_lev(LEVEL_3));

@@ -1,6 +1,8 @@
 //! Flash driver for parameters and encoder offset: three sectors of 16 KiB that `memory.x` keeps free of code.
 
 use super::{pwm, shared, watchdog};
+use crate::heartbeat;
+use crate::tasks::WATCHDOG;
 use core::ops::Range;
 use embassy_stm32::flash::{Async, Bank1Region1, Error, Flash as Chip, InterruptHandler};
 use embassy_stm32::pac;
@@ -17,7 +19,7 @@ bind_interrupts!(struct Lines { FLASH => InterruptHandler; });
 const STORE: Range<u32> = 0x4000..0x1_0000;
 
 /// Flash for the store. During write and erase the chip halts and the current is unmonitored, so the motor's bridge
-/// is open and the watchdog's timeout is extended.
+/// is open. Used within a [`StoreGuard`].
 pub struct Flash(Bank1Region1<'static, Async>);
 
 static FLASH_LEFT: Mutex<CriticalSectionRawMutex, core::cell::Cell<Option<Peri<'static, FLASH>>>> =
@@ -47,28 +49,63 @@ pub fn flash() -> Option<(Flash, Range<u32>)> {
     Some((Flash(Chip::new(peripheral, Lines).into_regions().bank1_region1), STORE))
 }
 
-/// Guard: while it exists the bridge is open, the watchdog's timeout extended and the data cache off. The cache keeps
-/// erased data, and can be reset only while it is off (RM0090, 3.6.4).
-pub(super) struct Standstill;
+/// Guard of a store: while it exists the bridge is open and the watchdog's timeout extended. The searches of a store
+/// and its halts keep the lowest priority from feeding for longer than the short timeout.
+pub struct StoreGuard(());
 
-impl Standstill {
-    pub(super) fn begin() -> Self {
-        // First, as the motor interrupt would close the bridge again.
-        shared::set_hold(true);
-        pwm::open();
-        watchdog::standstill(true);
-        pac::FLASH.acr().modify(|w| w.set_dcen(false));
-        Self
+impl StoreGuard {
+    /// Opens the bridge and extends the timeout.
+    pub fn begin() -> Self {
+        hold_open();
+        watchdog::set_timeout(watchdog::EXTENDED);
+        Self(())
     }
 }
 
-impl Drop for Standstill {
+impl Drop for StoreGuard {
+    fn drop(&mut self) {
+        watchdog::set_timeout(WATCHDOG);
+        shared::set_hold(false);
+    }
+}
+
+/// Opens the bridge until it is released; returns whether it was held open before.
+fn hold_open() -> bool {
+    // First, as the motor interrupt would close the bridge again.
+    let held = shared::set_hold(true);
+    pwm::open();
+    held
+}
+
+/// Guard of a write or erase: while it exists the bridge is open and the data cache off. The cache keeps erased data,
+/// and can be reset only while it is off (RM0090, 3.6.4). Its start and end feed the watchdog while the supervision is
+/// suspended, which is limited: a store without end is reset.
+pub(super) struct FlashStall {
+    held: bool,
+}
+
+impl FlashStall {
+    pub(super) fn begin() -> Self {
+        let held = hold_open();
+        feed();
+        pac::FLASH.acr().modify(|w| w.set_dcen(false));
+        Self { held }
+    }
+}
+
+impl Drop for FlashStall {
     fn drop(&mut self) {
         pac::FLASH.acr().modify(|w| w.set_dcrst(true));
         pac::FLASH.acr().modify(|w| w.set_dcrst(false));
         pac::FLASH.acr().modify(|w| w.set_dcen(true));
-        watchdog::standstill(false);
-        shared::set_hold(false);
+        feed();
+        shared::set_hold(self.held);
+    }
+}
+
+fn feed() {
+    if heartbeat::is_suspended() {
+        watchdog::feed_watchdog();
     }
 }
 
@@ -93,7 +130,7 @@ impl NorFlash for Flash {
     const ERASE_SIZE: usize = Bank1Region1::<Async>::ERASE_SIZE;
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Error> {
-        let _standstill = Standstill::begin();
+        let _stall = FlashStall::begin();
         self.0.write(offset, bytes).await
     }
 
@@ -101,7 +138,7 @@ impl NorFlash for Flash {
     /// would exceed the watchdog's timeout.
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Error> {
         for sector in (from..to).step_by(Self::ERASE_SIZE) {
-            let _standstill = Standstill::begin();
+            let _stall = FlashStall::begin();
             erase_by_words();
             self.0.erase(sector, to.min(sector + Self::ERASE_SIZE as u32)).await?;
         }

@@ -30,7 +30,7 @@ mod wheels;
 pub use brown_out::raise_level;
 pub use can::broadcast;
 pub use drive_faults::record_drive_faults;
-pub use flash::{Flash, flash};
+pub use flash::{Flash, StoreGuard, flash};
 pub use outputs::outputs_off;
 pub use reset::{end, log_stored_fault, reset_cause};
 pub use sensors::sense;
@@ -39,6 +39,7 @@ pub use watchdog::feed_watchdog;
 
 use crate::failure;
 use crate::heartbeat::Task;
+use crate::tasks::WATCHDOG;
 use crate::telemetry::{DriveError, Telemetry};
 use ::motor::MotorCommand;
 use control::{Command, Mode};
@@ -54,7 +55,8 @@ use static_cell::StaticCell;
 
 static CONTROL: InterruptExecutor = InterruptExecutor::new();
 
-/// Starts the chip and its peripherals except the motor interrupt; the watchdog runs from here on.
+/// Starts the chip and its peripherals except the motor interrupt; the watchdog runs from here on, with its extended
+/// timeout until [`run`].
 ///
 /// # Panics
 /// When called a second time.
@@ -99,7 +101,7 @@ impl MotorParts {
     }
 }
 
-/// Starts the executors; `control`'s is above `thread`'s.
+/// Starts the executors and ends the extended timeout of the watchdog; `control`'s executor is above `thread`'s.
 ///
 /// # Panics
 /// When called a second time.
@@ -107,6 +109,7 @@ pub fn run(control: impl FnOnce(SendSpawner), thread: impl FnOnce(Spawner)) -> !
     static THREAD: StaticCell<Executor> = StaticCell::new();
     THREAD.init(Executor::new()).run(|spawner| {
         thread(spawner);
+        watchdog::set_timeout(WATCHDOG);
         // UART5 is unused: its interrupt runs the control executor.
         control(CONTROL.start(interrupt::UART5));
     })
@@ -140,7 +143,6 @@ fn start_parts(peripherals: embassy_stm32::Peripherals) -> MotorParts {
     serial::start(pins.link);
     can::start(pins.can_receive, pins.can_transmit);
     flash::start(pins.flash);
-    watchdog::standstill(false);
     MotorParts { timer_in_step, gate_driver_good, encoder, gate_fault: Input::new(pins.gate_fault, Pull::Up) }
 }
 

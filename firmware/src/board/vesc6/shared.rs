@@ -169,9 +169,9 @@ pub(super) fn is_off() -> bool {
     OFF.load(Ordering::Relaxed)
 }
 
-/// Keeps the bridge open temporarily, or releases it.
-pub(super) fn set_hold(hold: bool) {
-    HOLD.store(hold, Ordering::SeqCst);
+/// Keeps the bridge open temporarily, or releases it; returns whether it was kept open before.
+pub(super) fn set_hold(hold: bool) -> bool {
+    HOLD.swap(hold, Ordering::SeqCst)
 }
 
 /// Whether the bridge is temporarily kept open.

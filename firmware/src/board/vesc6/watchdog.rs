@@ -1,13 +1,13 @@
 //! Independent watchdog: runs from its own oscillator and can't be stopped once started.
 
-use crate::tasks::WATCHDOG;
 use embassy_stm32::pac::IWDG;
 use embassy_stm32::pac::iwdg::vals::{Key, Pr};
 use embassy_time::Duration;
 
-/// Timeout while the chip can halt: at start, at most 0.8 s, and in an erase of a sector, at most 0.5 s plus 0.3 s in
-/// which control catches up on its steps. With the fastest oscillator it is 1.36 s.
-const STANDSTILL: Duration = Duration::from_millis(2000);
+/// Timeout at start, at most 0.8 s, and in a store, which is fed at the start and end of each erase and write. The
+/// longest time between two feeds is the erase of a sector, at most 0.5 s, after which control catches up on its steps,
+/// at most 0.6 s; searches of the sectors take less. With the fastest oscillator the timeout is 1.36 s.
+pub(super) const EXTENDED: Duration = Duration::from_millis(2000);
 
 /// One count, at 32 kHz / 64; the oscillator has 17 to 47 kHz.
 const COUNT: Duration = Duration::from_millis(2);
@@ -17,12 +17,11 @@ pub(super) fn start() {
     IWDG.kr().write(|w| w.set_key(Key::START));
     IWDG.kr().write(|w| w.set_key(Key::ENABLE));
     IWDG.pr().write(|w| w.set_pr(Pr::DIVIDE_BY64));
-    standstill(true);
+    set_timeout(EXTENDED);
 }
 
-/// Sets the extended timeout, or [`WATCHDOG`]; either restarts the count.
-pub(super) fn standstill(is: bool) {
-    let timeout = if is { STANDSTILL } else { WATCHDOG };
+/// Sets the timeout and restarts the count.
+pub(super) fn set_timeout(timeout: Duration) {
     settled();
     IWDG.kr().write(|w| w.set_key(Key::ENABLE));
     IWDG.rlr().write(|w| w.set_rl((timeout.as_ticks() / COUNT.as_ticks()) as u16));

@@ -134,3 +134,28 @@ fn a_store_cut_by_a_power_failure_is_the_old_one_or_the_new_one() {
     );
     assert!(!found[0] && found.is_sorted(), "{found:?}");
 }
+
+/// Situation: the watchdog's fastest oscillator, the slowest instructions and the longest times of the flash, which is
+/// erased.
+/// Action: more stores than a sector holds, each of another value.
+/// Must hold: each is confirmed; one sector is erased for them; no reset; the watchdog is always fed within its extended
+/// timeout, 1.36 s here, with a tenth to spare.
+#[test]
+fn a_store_that_begins_a_new_sector_is_survived() {
+    const STORES: u8 = 20;
+    const LONGEST_MS: f64 = 1.36e3 * 0.9;
+    let slowest =
+        Options { cycles_per_instruction: 1.6, lsi_hz: 47_000, flash: Pace::Longest, ..Options::default() };
+    let mut bench = started(slowest, &[0xff; 48 << 10]);
+    for count in 0..STORES {
+        store(&mut bench, 4.0 + f32::from(count) / 8.0);
+    }
+    assert_eq!(bench.resets(), [], "resets");
+    let (feeds, changes) = bench.with(|board| (board.watchdog_feeds.clone(), board.flash.changes.clone()));
+    let erased = changes.iter().filter(|(_, change)| matches!(change, Change::Erased { .. })).count();
+    assert_eq!(erased, 1, "sectors");
+    let longest_ns = feeds.windows(2).map(|pair| pair[1] - pair[0]).max().expect("it is fed");
+    let longest_ms = longest_ns as f64 * 1e-6;
+    println!("longest time without feeding the watchdog: {longest_ms:.0} ms");
+    assert!((500.0..LONGEST_MS).contains(&longest_ms), "{longest_ms} ms");
+}
