@@ -11,8 +11,7 @@ const PERIOD_US: f64 = 50.0;
 pub(crate) fn check(fault: &str, open_us: f64, reason: &str) {
     let fresh = format!("| {fault} | {} | {reason} |", time(open_us));
     println!("{fresh}");
-    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/safety.md");
-    let page = std::fs::read_to_string(page).expect("the page");
+    let page = page();
     let line = page.lines().find(|line| line.starts_with(&format!("| {fault} |")));
     let line = line.unwrap_or_else(|| panic!("docs/safety.md has no line\n{fresh}"));
     let cells: Vec<_> = line.split('|').map(str::trim).collect();
@@ -24,6 +23,19 @@ pub(crate) fn check(fault: &str, open_us: f64, reason: &str) {
         (page_us - open_us).abs() <= phase_us + 0.1 * open_us,
         "docs/safety.md log_has\n{line}, here\n{fresh}"
     );
+}
+
+/// The time in milliseconds that the page states after this text.
+pub(crate) fn guaranteed_ms(text: &str) -> f64 {
+    let page = page();
+    let (_, rest) = page.split_once(text).unwrap_or_else(|| panic!("docs/safety.md has no {text:?}"));
+    let number = rest.split_once(" ms").and_then(|(number, _)| number.parse().ok());
+    number.unwrap_or_else(|| panic!("docs/safety.md: no time in ms after {text:?}"))
+}
+
+fn page() -> String {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/safety.md");
+    std::fs::read_to_string(page).expect("the page")
 }
 
 fn time(us: f64) -> String {
