@@ -20,11 +20,11 @@ pub struct AlignConfig {
     /// Current along d \[A\].
     pub current_a: f32,
     /// Rise time of the current \[calls\].
-    pub ramp_ticks: u16,
+    pub ramp_calls: u16,
     /// Duration of a move by a quarter turn \[calls\].
-    pub move_ticks: u16,
+    pub move_calls: u16,
     /// Duration of a rest; the angle is the mean over its second half \[calls\].
-    pub rest_ticks: u16,
+    pub rest_calls: u16,
     /// Largest deviation of a move from a quarter turn, and largest motion during a rest \[electrical turns\].
     pub tolerance_turns: f32,
 }
@@ -33,9 +33,9 @@ impl AlignConfig {
     /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("align", "current_a", 0.1, 100.0), &mut self.current_a);
-        to.count(&ParamSpec::new("align", "ramp_ticks", 1.0, 65535.0), &mut self.ramp_ticks);
-        to.count(&ParamSpec::new("align", "move_ticks", 1.0, 65535.0), &mut self.move_ticks);
-        to.count(&ParamSpec::new("align", "rest_ticks", 2.0, 65535.0), &mut self.rest_ticks);
+        to.count(&ParamSpec::new("align", "ramp_calls", 1.0, 65535.0), &mut self.ramp_calls);
+        to.count(&ParamSpec::new("align", "move_calls", 1.0, 65535.0), &mut self.move_calls);
+        to.count(&ParamSpec::new("align", "rest_calls", 2.0, 65535.0), &mut self.rest_calls);
         to.number(&ParamSpec::new("align", "tolerance_turns", 0.001, 0.12), &mut self.tolerance_turns);
     }
 }
@@ -58,7 +58,7 @@ enum Stage {
 pub struct AlignState {
     stage: Stage,
     /// Calls since the stage began.
-    ticks: u16,
+    calls: u16,
     /// Electrical angles without offset during a rest \[turns\]: the first, and sum, count and extremes of the
     /// distances from it.
     first: Angle,
@@ -84,23 +84,23 @@ pub enum Align {
 
 /// One call; `electrical` is the encoder's angle times the pole pairs, without offset.
 pub fn step(config: &AlignConfig, state: &mut AlignState, electrical: Angle) -> Align {
-    state.ticks = state.ticks.saturating_add(1);
+    state.calls = state.calls.saturating_add(1);
     let (length, from, to) = match state.stage {
-        Stage::Ramp => (config.ramp_ticks, -0.25, -0.25),
-        Stage::Move0 => (config.move_ticks, -0.25, 0.0),
-        Stage::RestA | Stage::RestC => (config.rest_ticks, 0.0, 0.0),
-        Stage::Forward => (config.move_ticks, 0.0, 0.25),
-        Stage::RestB => (config.rest_ticks, 0.25, 0.25),
-        Stage::Back => (config.move_ticks, 0.25, 0.0),
+        Stage::Ramp => (config.ramp_calls, -0.25, -0.25),
+        Stage::Move0 => (config.move_calls, -0.25, 0.0),
+        Stage::RestA | Stage::RestC => (config.rest_calls, 0.0, 0.0),
+        Stage::Forward => (config.move_calls, 0.0, 0.25),
+        Stage::RestB => (config.rest_calls, 0.25, 0.25),
+        Stage::Back => (config.move_calls, 0.25, 0.0),
     };
-    let part = (f32::from(state.ticks) / f32::from(length)).min(1.0);
+    let part = (f32::from(state.calls) / f32::from(length)).min(1.0);
     let rests = matches!(state.stage, Stage::RestA | Stage::RestB | Stage::RestC);
     if rests && part > 0.5 {
         watch(state, electrical);
     }
     let field = Angle::of(from + (to - from) * part);
     let current = if state.stage == Stage::Ramp { config.current_a * part } else { config.current_a };
-    if state.ticks < length { Align::Field(field, current) } else { next(config, state, field) }
+    if state.calls < length { Align::Field(field, current) } else { next(config, state, field) }
 }
 
 /// Adds the angle to the mean of the rest.
@@ -154,6 +154,6 @@ fn next(config: &AlignConfig, state: &mut AlignState, field: Angle) -> Align {
             return Align::Found(mean.plus(Angle::of(0.5 * apart)));
         }
     };
-    (state.ticks, state.count) = (0, 0);
+    (state.calls, state.count) = (0, 0);
     Align::Field(field, config.current_a)
 }

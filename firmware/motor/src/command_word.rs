@@ -28,23 +28,23 @@ pub fn command(word: u32) -> MotorCommand {
 /// Timeout of the command, on the motor's side.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Deadline {
-    beat: u32,
+    count: u32,
     silent_calls: u16,
 }
 
 impl Default for Deadline {
     /// No command received yet.
     fn default() -> Self {
-        Self { beat: 0, silent_calls: u16::MAX }
+        Self { count: 0, silent_calls: u16::MAX }
     }
 }
 
 impl Deadline {
-    /// One call of the motor interrupt: returns `command` if the counter `beat`, which control increments with each
+    /// One call of the motor interrupt: returns `command` if the number `count`, which control increments with each
     /// command, has changed within `timeout_calls`, else [`MotorCommand::Off`].
-    pub fn step(&mut self, beat: u32, command: MotorCommand, timeout_calls: u16) -> MotorCommand {
-        self.silent_calls = if beat == self.beat { self.silent_calls.saturating_add(1) } else { 0 };
-        self.beat = beat;
+    pub fn step(&mut self, count: u32, command: MotorCommand, timeout_calls: u16) -> MotorCommand {
+        self.silent_calls = if count == self.count { self.silent_calls.saturating_add(1) } else { 0 };
+        self.count = count;
         if self.is_over(timeout_calls) { MotorCommand::Off } else { command }
     }
 

@@ -134,9 +134,9 @@ impl Config {
             encoder: EncoderPlan::new(&self.encoder, self.rate_hz),
             period_s: 1.0 / self.rate_hz,
             torque_nm_a: self.motor.torque_nm_a(),
-            unproved_a: self.angle.unproved_nm / self.motor.torque_nm_a().abs(),
+            unverified_angle_limit_a: self.angle.unproved_nm / self.motor.torque_nm_a().abs(),
             dead_duty: self.bridge.dead_duty(self.rate_hz),
-            reach: self.bridge.reach(),
+            max_voltage_ratio: self.bridge.max_voltage_ratio(),
             config: self,
         })
     }
@@ -150,9 +150,9 @@ pub struct Plan {
     pub(crate) encoder: EncoderPlan,
     pub(crate) period_s: f32,
     pub(crate) torque_nm_a: f32,
-    pub(crate) unproved_a: f32,
+    pub(crate) unverified_angle_limit_a: f32,
     pub(crate) dead_duty: f32,
-    pub(crate) reach: f32,
+    pub(crate) max_voltage_ratio: f32,
 }
 
 impl Plan {

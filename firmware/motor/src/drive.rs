@@ -40,7 +40,7 @@ pub struct Inputs {
     /// Newest encoder counts.
     pub angle_counts: u16,
     /// Age of the counts \[calls\]; `control::sensors::frame::MISSING` for none.
-    pub angle_age_ticks: u16,
+    pub angle_age_calls: u16,
     /// Highest measured temperature \[deg C\].
     pub temperature_c: f32,
     /// Command.
@@ -133,7 +133,7 @@ pub struct Output {
 /// detects it.
 pub fn step(plan: &Plan, state: &mut State, inputs: &Inputs) -> Output {
     let reading =
-        encoder::step(&plan.encoder, &mut state.encoder, inputs.angle_counts, inputs.angle_age_ticks);
+        encoder::step(&plan.encoder, &mut state.encoder, inputs.angle_counts, inputs.angle_age_calls);
     let raw = inputs.phases.all();
     let offset = state.offset.or(plan.config.encoder.offset_turns.map(Angle::of));
     let mode = match (state.zero.zeros_a(), inputs.command, offset) {
@@ -218,7 +218,7 @@ fn close(
     let measured = park(measured, angle.sin_cos());
     // During alignment the rotor oscillates about the field; without voltage along q its own back-EMF damps it.
     let wanted = if mode == Mode::Aligning { Vector::new(wanted.d, measured.q) } else { wanted };
-    let max_v = inputs.bus_v * plan.reach;
+    let max_v = inputs.bus_v * plan.max_voltage_ratio;
     let reachable = plan.gains.steady(wanted, omega_rad_s).square() < (0.9 * max_v) * (0.9 * max_v);
     let error_a = wanted.minus(measured).length();
     let drive = &mut state.drive;
@@ -286,7 +286,8 @@ fn running(
     let speed = reading.speed_turns_s;
     let requested_a = requested_nm / plan.torque_nm_a;
     let limit_a = stall::step(&c.stall, &mut state.stall, plan.period_s, requested_a, speed, limit_a);
-    let limit_a = if state.drive.angle.is_proved() { limit_a } else { limit_a.min(plan.unproved_a) };
+    let limit_a =
+        if state.drive.angle.is_proved() { limit_a } else { limit_a.min(plan.unverified_angle_limit_a) };
     let torque = &mut state.drive.torque_nm;
     *torque = torque_limit::step(&c.demand, plan.period_s, *torque, requested_nm, limit_a, plan.torque_nm_a);
     let field = Field {

@@ -21,7 +21,7 @@ pub struct EncoderConfig {
     /// no torque before alignment.
     pub offset_turns: Option<f32>,
     /// Timeout of a sample \[calls\].
-    pub timeout_ticks: u16,
+    pub timeout_calls: u16,
     /// Largest difference of a sample from the extrapolated angle \[turns of the motor\]; well below an eighth of an
     /// electrical turn.
     pub jump_turns: f32,
@@ -37,7 +37,7 @@ impl EncoderConfig {
         to.count(&ParamSpec::new("encoder", "counts", 16.0, 65535.0), &mut self.counts);
         to.switch(&ParamSpec::switch("encoder", "reversed"), &mut self.reversed);
         to.optional_number(&ParamSpec::new("encoder", "offset_turns", -0.5, 0.5), &mut self.offset_turns);
-        to.count(&ParamSpec::new("encoder", "timeout_ticks", 1.0, 1000.0), &mut self.timeout_ticks);
+        to.count(&ParamSpec::new("encoder", "timeout_calls", 1.0, 1000.0), &mut self.timeout_calls);
         to.number(&ParamSpec::new("encoder", "jump_turns", 1e-4, 0.125), &mut self.jump_turns);
         to.number(&ParamSpec::new("encoder", "speed_max_turns_s", 1.0, 1000.0), &mut self.speed_max_turns_s);
         to.number(&ParamSpec::new("encoder", "tracking_hz", 5.0, 1000.0), &mut self.tracking_hz);
@@ -114,21 +114,21 @@ pub struct EncoderReading {
 }
 
 /// One call, with the newest sample's counts and its age in calls ([`MISSING`]: none yet).
-pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_ticks: u16) -> EncoderReading {
+pub fn step(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age_calls: u16) -> EncoderReading {
     let config = &plan.config;
     state.age = state.age.saturating_add(1);
     state.followed = state.followed.plus(Angle::of(state.speed_turns_s * plan.period_s));
-    let new = age_ticks != state.reported_age.saturating_add(1) && age_ticks <= config.timeout_ticks;
-    state.reported_age = age_ticks;
+    let new = age_calls != state.reported_age.saturating_add(1) && age_calls <= config.timeout_calls;
+    state.reported_age = age_calls;
     // A loss is reported even if it ends in this call.
     let mut faults = Faults::NONE;
-    faults.note(state.rejected, state.age > config.timeout_ticks);
+    faults.note(state.rejected, state.age > config.timeout_calls);
     if new {
-        take(plan, state, counts, age_ticks);
+        take(plan, state, counts, age_calls);
     }
     let speed = state.speed_turns_s;
     faults.note(Fault::EncoderSpeed, speed.abs() > config.speed_max_turns_s);
-    let since = f32::from(state.age.min(config.timeout_ticks)) * plan.period_s;
+    let since = f32::from(state.age.min(config.timeout_calls)) * plan.period_s;
     EncoderReading { angle: state.sample.plus(Angle::of(speed * since)), speed_turns_s: speed, faults }
 }
 
@@ -143,7 +143,7 @@ fn take(plan: &EncoderPlan, state: &mut EncoderState, counts: u16, age: u16) {
     let sample = if config.reversed { forward.mirrored() } else { forward };
     let calls = f32::from(state.age.saturating_sub(age).clamp(1, 20));
     let most = 1.25 * config.speed_max_turns_s;
-    if state.age > config.timeout_ticks {
+    if state.age > config.timeout_calls {
         // First sample at all or after a loss: the loop restarts, and the second sample gives the speed.
         (state.followed, state.speed_turns_s, state.moving) = (sample, 0.0, false);
     } else if !state.moving {

@@ -17,7 +17,7 @@ pub enum Fault {
     /// The sum of the three measured currents is not zero.
     CurrentSum = 5,
     /// The current does not follow its set-point, although the voltage suffices.
-    CurrentAstray = 6,
+    CurrentTracking = 6,
     /// As above, and only phase a carries no current.
     PhaseALost = 7,
     /// As above, and only phase b carries no current.
@@ -43,7 +43,7 @@ pub enum Fault {
     /// The encoder's speed exceeds the motor's largest.
     EncoderSpeed = 18,
     /// Current and encoder speed do not explain the voltage: a stuck encoder, or an open phase.
-    VoltageAstray = 19,
+    VoltageResidual = 19,
     /// The encoder does not follow the field by a quarter turn.
     AlignLag = 20,
     /// The encoder follows the field in the wrong direction.
@@ -54,7 +54,7 @@ pub enum Fault {
     Command = 23,
     /// The direction of the back-EMF contradicts the encoder's angle: a slipped encoder, or the offset of another
     /// motor.
-    AngleAstray = 24,
+    AngleMismatch = 24,
 }
 
 /// Every fault, in the order of the codes.
@@ -62,9 +62,9 @@ pub enum Fault {
 pub const FAULTS: [Fault; 24] = {
     use Fault::*;
     [
-        OverCurrent, Overload, CurrentSensor, CurrentZero, CurrentSum, CurrentAstray, PhaseALost, PhaseBLost, PhaseCLost,
+        OverCurrent, Overload, CurrentSensor, CurrentZero, CurrentSum, CurrentTracking, PhaseALost, PhaseBLost, PhaseCLost,
         BusLow, BusHigh, BusSensor, Hot, HeatSensor, EncoderLost, EncoderRange, EncoderJump, EncoderSpeed,
-        VoltageAstray, AlignLag, AlignReversed, AlignRestless, Command, AngleAstray,
+        VoltageResidual, AlignLag, AlignReversed, AlignRestless, Command, AngleMismatch,
     ]
 };
 

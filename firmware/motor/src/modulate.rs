@@ -28,7 +28,7 @@ impl Bridge {
     }
 
     /// Largest voltage vector in any direction, per volt of the bus.
-    pub fn reach(&self) -> f32 {
+    pub fn max_voltage_ratio(&self) -> f32 {
         (self.duty_max - self.duty_min) * 0.577_350_26
     }
 

@@ -144,9 +144,9 @@ fn motor() {
     for command in
         black_box([motor::MotorCommand::Off, motor::MotorCommand::Align, motor::MotorCommand::Torque(1.0)])
     {
-        let (angle_counts, angle_age_ticks) = (black_box(0), black_box(0));
+        let (angle_counts, angle_age_calls) = (black_box(0), black_box(0));
         let (bus_v, temperature_c) = (black_box(24.0), black_box(20.0));
-        let inputs = motor::Inputs { phases, bus_v, angle_counts, angle_age_ticks, temperature_c, command };
+        let inputs = motor::Inputs { phases, bus_v, angle_counts, angle_age_calls, temperature_c, command };
         used(motor::step(&plan, &mut state, &inputs));
     }
 }
@@ -161,7 +161,7 @@ fn board() {
     used((settings.control1(), settings.control2(), drv8301::Status(counts, counts).names().count()));
     used(black_box(devices::fault_pin::FaultPin::default()).step(black_box(true)));
     used(
-        black_box(devices::slow::Slow::default())
+        black_box(devices::rotor_speed::RotorSpeedCheck::default())
             .step(black_box(None), MOTOR.motor.turns_s_at(black_box(8.5))),
     );
     used(devices::silicon::has_prefetch(counts, counts));

@@ -67,7 +67,7 @@ async fn hold() {
             FOUND.signal(offset_turns);
         }
         found = aligning && (found || report.aligned);
-        board::order(if aligning && !found { MotorCommand::Align } else { MotorCommand::Off });
+        board::set_command(if aligning && !found { MotorCommand::Align } else { MotorCommand::Off });
         PERIODS.store(PERIODS.load(Relaxed).wrapping_add(1), Relaxed);
     }
 }

@@ -163,11 +163,11 @@ type Change = fn(&mut Inputs);
 const FAULTS: [(Fault, Change); 9] = [
     (Fault::CurrentSensor, |i| i.phases = motor::Phases::Three([f32::NAN; 3])),
     (Fault::OverCurrent, |i| i.phases = motor::Phases::Three([20.0, -10.0, -10.0])),
-    (Fault::CurrentAstray, |i| i.phases = motor::Phases::Three([0.1, 0.1, -0.2])),
+    (Fault::CurrentTracking, |i| i.phases = motor::Phases::Three([0.1, 0.1, -0.2])),
     (Fault::CurrentSum, |i| i.phases = motor::Phases::Three([4.0, 4.0, 4.0])),
     (Fault::BusLow, |i| i.bus_v = 10.0),
     (Fault::Hot, |i| i.temperature_c = 110.0),
-    (Fault::EncoderLost, |i| i.angle_age_ticks = u16::MAX),
+    (Fault::EncoderLost, |i| i.angle_age_calls = u16::MAX),
     (Fault::EncoderRange, |i| i.angle_counts = u16::MAX),
     (Fault::Command, |i| i.command = MotorCommand::Torque(f32::NAN)),
 ];

@@ -11,7 +11,7 @@ use link::fault_log;
 use link::report::FaultKind;
 
 /// Runs one [`step`] at every whole [`PERIOD`] of the clock, beginning with the next one, with the newest plan of
-/// [`settings::offer`].
+/// [`settings::queue_plan`].
 ///
 /// Delayed steps are run as soon as possible, so that the number of steps equals the number of elapsed periods; each
 /// missed deadline is counted.
@@ -24,7 +24,7 @@ pub async fn control(plan: &'static mut Plan) {
     loop {
         release += PERIOD;
         Timer::at(release).await;
-        if let Some((next, number)) = settings::take(mode, state.torque_nm()) {
+        if let Some((next, number)) = settings::take_pending_plan(mode, state.torque_nm()) {
             (*plan, configuration) = (next, number);
             (state, mode) = (State::default(), Mode::Off);
         }

@@ -141,7 +141,7 @@ fn change(request: &Message<'_>, sequence: u16, queue: &mut Queue) {
     if config != before
         && let Ok(plan) = config.plan()
     {
-        settings::offer(plan, false);
+        settings::queue_plan(plan, false);
     }
     queue.answer(&answer.unwrap_or(Message::Rejected(Rejection::of(RejectReason::NotHere))), sequence);
 }

@@ -43,7 +43,7 @@ pub fn config() -> Config {
 }
 
 /// Passes a plan to the controller, which restarts with it as soon as no torque flows, or at once.
-pub fn offer(plan: Plan, at_once: bool) {
+pub fn queue_plan(plan: Plan, at_once: bool) {
     SETTINGS.lock(|settings| {
         let mut settings = settings.borrow_mut();
         settings.config = Some(plan.config().clone());
@@ -68,7 +68,7 @@ pub(super) fn polarity_passed(number: u32) {
 }
 
 /// The pending plan and its number, if a controller in this mode and with this last torque can use it.
-pub(super) fn take(mode: Mode, torque_nm: f32) -> Option<(Plan, u32)> {
+pub(super) fn take_pending_plan(mode: Mode, torque_nm: f32) -> Option<(Plan, u32)> {
     SETTINGS.lock(|settings| {
         let mut settings = settings.borrow_mut();
         let next = settings.next.take_if(|next| next.at_once || !(mode.drives() || torque_nm != 0.0))?;

@@ -70,7 +70,7 @@ impl Axle {
             phases: Phases::Three(drive.machine.phases_a().map(|i| i as f32)),
             bus_v: drive.machine.bus_v as f32,
             angle_counts: (turns * counts).floor().rem_euclid(counts) as u16,
-            angle_age_ticks: 0,
+            angle_age_calls: 0,
             temperature_c: 25.0,
             command,
         };

@@ -39,7 +39,7 @@ fn the_error_flag_rejects_a_few_answers_only() {
     assert!(
         answers[..rejected].iter().all(Option::is_none) && answers[rejected..].iter().all(|a| *a == Some(77))
     );
-    assert!(u16::from(FLAGGED) + 1 < MOTOR.encoder.timeout_ticks);
+    assert!(u16::from(FLAGGED) + 1 < MOTOR.encoder.timeout_calls);
     assert_eq!((line.flagged, line.damaged), (1000, 0));
     assert_eq!([with_parity(78), flagged].map(|answer| line.step(answer)), [Some(78), None]);
 }

@@ -23,11 +23,11 @@ pub struct AngleConfig {
     /// Tolerance as a fraction of a phase's dead-time voltage.
     pub dead_part: f32,
     /// Time constant of the mean values \[calls\].
-    pub mean_ticks: u16,
+    pub mean_calls: u16,
     /// Largest torque on the steer axis while the angle is unconfirmed \[N m\].
     pub unproved_nm: f32,
     /// Time for which a confirmation is valid \[calls\].
-    pub proof_ticks: u16,
+    pub proof_calls: u16,
 }
 
 impl AngleConfig {
@@ -37,9 +37,9 @@ impl AngleConfig {
         to.number(&ParamSpec::new("angle", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
         to.number(&ParamSpec::new("angle", "flux_part", 0.0, 0.65), &mut self.flux_part);
         to.number(&ParamSpec::new("angle", "dead_part", 0.0, 5.0), &mut self.dead_part);
-        to.count(&ParamSpec::new("angle", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
+        to.count(&ParamSpec::new("angle", "mean_calls", 1.0, 10_000.0), &mut self.mean_calls);
         to.number(&ParamSpec::new("angle", "unproved_nm", 0.1, 100.0), &mut self.unproved_nm);
-        to.count(&ParamSpec::new("angle", "proof_ticks", 1.0, 65535.0), &mut self.proof_ticks);
+        to.count(&ParamSpec::new("angle", "proof_calls", 1.0, 65535.0), &mut self.proof_calls);
     }
 }
 
@@ -77,7 +77,7 @@ impl AngleState {
 
 /// One call.
 pub fn step(config: &AngleConfig, state: &mut AngleState, now: &Voltages) -> Option<Fault> {
-    let gain = 1.0 / f32::from(config.mean_ticks);
+    let gain = 1.0 / f32::from(config.mean_calls);
     let along = if now.magnets < 0.0 { -now.unexplained.q } else { now.unexplained.q };
     follow_mean(&mut state.aside, now.unexplained.d, gain);
     follow_mean(&mut state.along, along, gain);
@@ -90,7 +90,7 @@ pub fn step(config: &AngleConfig, state: &mut AngleState, now: &Voltages) -> Opt
     let error = config.error_v + dead + dead.max(config.resistance_part * state.resistive);
     // The error is less than an eighth of a turn, for all tolerated errors.
     let proved = state.magnets + state.along > error + aside;
-    state.proved = if proved { config.proof_ticks } else { state.proved.saturating_sub(1) };
+    state.proved = if proved { config.proof_calls } else { state.proved.saturating_sub(1) };
     let wrong = aside > config.error_v + dead + flux || -state.along > error + flux;
-    wrong.then_some(Fault::AngleAstray)
+    wrong.then_some(Fault::AngleMismatch)
 }

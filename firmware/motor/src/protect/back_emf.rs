@@ -14,7 +14,7 @@ pub struct BackEmfConfig {
     /// deg C.
     pub resistance_part: f32,
     /// Time constant of the mean \[calls\].
-    pub mean_ticks: u16,
+    pub mean_calls: u16,
 }
 
 impl BackEmfConfig {
@@ -22,7 +22,7 @@ impl BackEmfConfig {
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("emf", "error_v", 0.1, 50.0), &mut self.error_v);
         to.number(&ParamSpec::new("emf", "resistance_part", 0.0, 2.0), &mut self.resistance_part);
-        to.count(&ParamSpec::new("emf", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
+        to.count(&ParamSpec::new("emf", "mean_calls", 1.0, 10_000.0), &mut self.mean_calls);
     }
 }
 
@@ -36,6 +36,6 @@ pub fn step(
     dead_v: f32,
 ) -> Option<Fault> {
     let beyond = unexplained.length() - config.resistance_part * resistive_v - dead_v;
-    follow_mean(mean_v, beyond, 1.0 / f32::from(config.mean_ticks));
-    (*mean_v > config.error_v).then_some(Fault::VoltageAstray)
+    follow_mean(mean_v, beyond, 1.0 / f32::from(config.mean_calls));
+    (*mean_v > config.error_v).then_some(Fault::VoltageResidual)
 }

@@ -10,14 +10,14 @@ pub struct CurrentTrackingConfig {
     /// Largest mean deviation from the set-point \[A\].
     pub error_a: f32,
     /// Time constant of the mean \[calls\].
-    pub mean_ticks: u16,
+    pub mean_calls: u16,
 }
 
 impl CurrentTrackingConfig {
     /// Visits every parameter.
     pub fn visit_params<V: ParamVisitor>(&mut self, to: &mut V) {
         to.number(&ParamSpec::new("follow", "error_a", 0.01, 100.0), &mut self.error_a);
-        to.count(&ParamSpec::new("follow", "mean_ticks", 1.0, 10_000.0), &mut self.mean_ticks);
+        to.count(&ParamSpec::new("follow", "mean_calls", 1.0, 10_000.0), &mut self.mean_calls);
     }
 }
 
@@ -44,7 +44,7 @@ pub fn step(
     phases_a: [f32; 3],
     reachable: bool,
 ) -> Option<Fault> {
-    let gain = 1.0 / f32::from(config.mean_ticks);
+    let gain = 1.0 / f32::from(config.mean_calls);
     follow_mean(&mut state.error_a, if reachable { error_a } else { 0.0 }, gain);
     for (dead, i) in state.dead.iter_mut().zip(phases_a) {
         *dead = if i.abs() < NOTHING * config.error_a { dead.saturating_add(1) } else { 0 };
@@ -56,6 +56,6 @@ pub fn step(
         [true, false, false] => Fault::PhaseALost,
         [false, true, false] => Fault::PhaseBLost,
         [false, false, true] => Fault::PhaseCLost,
-        _ => Fault::CurrentAstray,
+        _ => Fault::CurrentTracking,
     })
 }

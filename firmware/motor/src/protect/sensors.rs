@@ -32,7 +32,7 @@ pub struct SensorsConfig {
     /// Largest valid sum of three phases \[A\].
     pub sum_a: f32,
     /// Calls for which a larger sum is tolerated.
-    pub sum_ticks: u16,
+    pub sum_calls: u16,
 }
 
 impl SensorsConfig {
@@ -41,7 +41,7 @@ impl SensorsConfig {
         to.number(&ParamSpec::new("sensors", "range_a", 0.1, 1000.0), &mut self.range_a);
         to.number(&ParamSpec::new("sensors", "trip_a", 0.1, 1000.0), &mut self.trip_a);
         to.number(&ParamSpec::new("sensors", "sum_a", 0.01, 100.0), &mut self.sum_a);
-        to.count(&ParamSpec::new("sensors", "sum_ticks", 0.0, 1000.0), &mut self.sum_ticks);
+        to.count(&ParamSpec::new("sensors", "sum_calls", 0.0, 1000.0), &mut self.sum_calls);
     }
 }
 
@@ -56,6 +56,6 @@ pub fn step(config: &SensorsConfig, beyond: &mut u16, phases_a: [f32; 3]) -> Fau
     faults.note(Fault::OverCurrent, phases_a.iter().any(|i| i.abs() > config.trip_a));
     let [a, b, c] = phases_a;
     *beyond = if (a + b + c).abs() > config.sum_a { beyond.saturating_add(1) } else { 0 };
-    faults.note(Fault::CurrentSum, *beyond > config.sum_ticks);
+    faults.note(Fault::CurrentSum, *beyond > config.sum_calls);
     faults
 }

@@ -14,7 +14,7 @@ pub struct SupplyConfig {
     /// Voltage above which the bridge opens \[V\].
     pub high_v: f32,
     /// Calls for which the bus voltage can be outside its limits.
-    pub persist_ticks: u16,
+    pub persist_calls: u16,
 }
 
 impl SupplyConfig {
@@ -23,7 +23,7 @@ impl SupplyConfig {
         to.number(&ParamSpec::new("supply", "low_v", 1.0, 100.0), &mut self.low_v);
         to.number(&ParamSpec::new("supply", "sag_v", 1.0, 100.0), &mut self.sag_v);
         to.number(&ParamSpec::new("supply", "high_v", 1.0, 100.0), &mut self.high_v);
-        to.count(&ParamSpec::new("supply", "persist_ticks", 0.0, 1000.0), &mut self.persist_ticks);
+        to.count(&ParamSpec::new("supply", "persist_calls", 0.0, 1000.0), &mut self.persist_calls);
     }
 }
 
@@ -47,10 +47,10 @@ pub fn step(config: &SupplyConfig, state: &mut SupplyState, bus_v: f32) -> (f32,
     let count = |calls: u16, outside: bool| if outside { calls.saturating_add(1) } else { 0 };
     state.low = count(state.low, bus_v < config.low_v);
     state.high = count(state.high, bus_v > config.high_v);
-    let fault = if state.low > config.persist_ticks {
+    let fault = if state.low > config.persist_calls {
         Some(Fault::BusLow)
     } else {
-        (state.high > config.persist_ticks).then_some(Fault::BusHigh)
+        (state.high > config.persist_calls).then_some(Fault::BusHigh)
     };
     (share(bus_v, config.low_v, config.sag_v), fault)
 }

@@ -107,7 +107,7 @@ impl Bench {
             phases: Phases::Three(measured),
             bus_v: self.machine.bus_v as f32,
             angle_counts: (turns * counts).floor().rem_euclid(counts) as u16,
-            angle_age_ticks: 0,
+            angle_age_calls: 0,
             temperature_c: self.temperature_c,
             command,
         }

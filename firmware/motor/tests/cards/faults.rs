@@ -50,9 +50,9 @@ fn an_input_that_is_wrong() {
         ("101 deg C", |_, i| i.temperature_c = 101.0, Fault::Hot, 1),
         ("a command of NaN", |_, i| i.command = MotorCommand::Torque(f32::NAN), Fault::Command, 1),
         ("a command of infinity", |_, i| i.command = MotorCommand::Torque(f32::INFINITY), Fault::Command, 1),
-        ("an encoder that is silent", |n, i| i.angle_age_ticks = n as u16 + 1, Fault::EncoderLost, 11),
-        ("an encoder that has nothing", |_, i| i.angle_age_ticks = u16::MAX, Fault::EncoderLost, 11),
-        ("an encoder that is always late", |_, i| i.angle_age_ticks = 50, Fault::EncoderLost, 11),
+        ("an encoder that is silent", |n, i| i.angle_age_calls = n as u16 + 1, Fault::EncoderLost, 11),
+        ("an encoder that has nothing", |_, i| i.angle_age_calls = u16::MAX, Fault::EncoderLost, 11),
+        ("an encoder that is always late", |_, i| i.angle_age_calls = 50, Fault::EncoderLost, 11),
         ("counts beyond a turn", |_, i| i.angle_counts = 16_384, Fault::EncoderRange, 11),
         (
             "a jump of 300 counts",
@@ -147,7 +147,7 @@ fn an_encoder_that_is_stuck() {
             let latest = if rate.abs() < 2.0 { 1000 } else { 400 };
             assert!(opened(&records).is_some_and(|n| (2..=latest).contains(&n)));
             let faults = last(&records).out.faults;
-            let may = [Fault::VoltageAstray, Fault::CurrentAstray, Fault::AngleAstray];
+            let may = [Fault::VoltageResidual, Fault::CurrentTracking, Fault::AngleMismatch];
             assert!(faults.iter().all(|fault| may.contains(&fault)), "{faults:?}");
         } else {
             assert_eq!(opened(&records), None, "{rate}");
@@ -174,14 +174,14 @@ fn a_phase_is_cut() {
             let records = bench.run(400, MotorCommand::Torque(4.0));
             let out = last(&records).out;
             assert!(opened(&records).is_some_and(|n| (5..=200).contains(&n)), "{cut} {angle}: {out:?}");
-            let may = [fault, Fault::CurrentAstray, Fault::VoltageAstray, Fault::AngleAstray];
+            let may = [fault, Fault::CurrentTracking, Fault::VoltageResidual, Fault::AngleMismatch];
             assert!(out.faults.iter().all(|f| may.contains(&f)), "{out:?}");
         }
     }
     let mut bench = turning(3.0);
     bench.machine.cut = [true; 3];
     let records = bench.run(400, MotorCommand::Torque(4.0));
-    opens("all three cut", &records, Fault::CurrentAstray, 5, 200);
+    opens("all three cut", &records, Fault::CurrentTracking, 5, 200);
 }
 
 /// Situation: a current sensor reads only its offset, with 4 N m at 2 rad/s. Must hold: the sum detects it within

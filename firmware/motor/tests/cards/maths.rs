@@ -42,7 +42,7 @@ proptest! {
     fn the_duty_cycles_give_the_voltage(part in 0.0_f32..1.0, parts in any::<u32>(), bus_v in 16.0_f32..32.0) {
         let b = EXAMPLE.bridge;
         let (sin, cos) = Angle(parts).sin_cos();
-        let requested = Vector::new(cos, sin).times(part * b.reach() * bus_v);
+        let requested = Vector::new(cos, sin).times(part * b.max_voltage_ratio() * bus_v);
         let d = duties(&b, 0.0, requested, Vector::default(), bus_v);
         let given = clarke(d.map(|d| d * bus_v));
         prop_assert!(given.minus(requested).length() < 1e-4 * bus_v, "{given:?} is not {requested:?}");

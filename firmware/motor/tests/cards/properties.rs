@@ -30,11 +30,11 @@ fn any_inputs() -> impl Strategy<Value = Inputs> {
     let age = prop_oneof![20 => 0_u16..5, 1 => any::<u16>()];
     let counts = prop_oneof![10 => 0_u16..100, 1 => any::<u16>()];
     (phases, bus, temperature, counts, age, any_command()).prop_map(
-        |(phases, bus_v, temperature_c, angle_counts, angle_age_ticks, command)| Inputs {
+        |(phases, bus_v, temperature_c, angle_counts, angle_age_calls, command)| Inputs {
             phases,
             bus_v,
             angle_counts,
-            angle_age_ticks,
+            angle_age_calls,
             temperature_c,
             command,
         },
@@ -48,7 +48,7 @@ fn wide() -> Config {
     c.zero.samples = 1;
     (c.sensors.trip_a, c.follow.error_a, c.emf.error_v) = (60.0, 100.0, 50.0);
     c.angle.error_v = 50.0;
-    (c.align.ramp_ticks, c.align.move_ticks, c.align.rest_ticks) = (3, 3, 4);
+    (c.align.ramp_calls, c.align.move_calls, c.align.rest_calls) = (3, 3, 4);
     c
 }
 
@@ -108,7 +108,7 @@ fn rest(command: MotorCommand) -> Inputs {
         phases: Phases::Three([0.0; 3]),
         bus_v: 24.0,
         angle_counts: 0,
-        angle_age_ticks: 0,
+        angle_age_calls: 0,
         temperature_c: 25.0,
         command,
     }

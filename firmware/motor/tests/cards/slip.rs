@@ -191,7 +191,7 @@ fn a_creeping_encoder() {
         };
         println!("{rate} rad/s: open at {off_deg:.0} degrees");
         assert!(off_deg > 20.0, "{rate}: {off_deg}");
-        let may = [Fault::AngleAstray, Fault::VoltageAstray];
+        let may = [Fault::AngleMismatch, Fault::VoltageResidual];
         assert!(fault.iter().all(|fault| may.contains(&fault)), "{rate}: {fault:?}");
     }
 }
@@ -213,7 +213,7 @@ fn a_handlebar_at_rest_and_free() {
         );
         assert!(open_ms.is_some_and(|ms| (30.0..latest_ms).contains(&ms)), "{deg}: {open_ms:?}");
         assert!((0.8..UNCONFIRMED_NM).contains(&worst_nm), "{deg}: {worst_nm}");
-        assert!(last(&records).out.faults.has(Fault::AngleAstray));
+        assert!(last(&records).out.faults.has(Fault::AngleMismatch));
     }
 }
 

@@ -124,8 +124,8 @@ fn an_encoder_slower_than_the_pwm() {
         if tick.is_multiple_of(4) {
             held.set((inputs.angle_counts, 0));
         }
-        (inputs.angle_counts, inputs.angle_age_ticks) = held.get();
-        held.set((inputs.angle_counts, inputs.angle_age_ticks + 1));
+        (inputs.angle_counts, inputs.angle_age_calls) = held.get();
+        held.set((inputs.angle_counts, inputs.angle_age_calls + 1));
     };
     let _ = bench.tampered(1000, MotorCommand::Off, slow);
     let records = bench.tampered(2000, MotorCommand::Torque(4.0), slow);

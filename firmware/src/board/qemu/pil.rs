@@ -214,7 +214,7 @@ fn take(message: &Message<'_>, sequence: u16, incoming: &mut Incoming, out: &mut
         Message::PilReset => {
             let answer = match incoming.plan() {
                 Ok(plan) => {
-                    tasks::settings::offer(plan, true);
+                    tasks::settings::queue_plan(plan, true);
                     critical_section::with(|cs| SENSORS.borrow(cs).replace(Some(Sensors::NONE)));
                     Message::Done
                 }

@@ -32,7 +32,7 @@ impl SimulatedMotor {
             phases: Phases::Three(phases(self.current)),
             bus_v: BUS_V,
             angle_counts: (((self.angle.0 >> 16) * counts) >> 16) as u16,
-            angle_age_ticks: 0,
+            angle_age_calls: 0,
             temperature_c: 25.0,
             command,
         }

@@ -70,11 +70,11 @@ pub(super) fn counts() -> Counts {
 
 /// Clears pending interrupts: the first one then comes from the end of a future conversion, at its place in the PWM
 /// period.
-pub(super) fn forget() {
+pub(super) fn clear_pending() {
     ADC1.sr().modify(|w| w.set_jeoc(false));
 }
 
 /// Whether the next conversions have already ended.
-pub(super) fn again() -> bool {
+pub(super) fn next_conversion_ended() -> bool {
     ADC1.sr().read().jeoc()
 }

@@ -33,7 +33,7 @@ pub(super) fn config() -> Config {
 
 /// Enables the flash caches, and prefetch where the chip supports it. The HAL leaves them off, and each word then
 /// takes 6 cycles.
-pub(super) fn quicken_flash() {
+pub(super) fn enable_flash_caches() {
     let chip = DBGMCU.idcode().read();
     let prefetch = has_prefetch(chip.dev_id(), chip.rev_id());
     defmt::info!(

@@ -8,7 +8,7 @@ use heapless::String;
 use link::report::{FAULT_TEXT_BYTES, FaultKind};
 
 /// Polling period.
-const LOOK: Duration = Duration::from_millis(10);
+const POLL_PERIOD: Duration = Duration::from_millis(10);
 
 /// Stores a gate-driver fault with the driver's status, and the first faults of the motor loop.
 #[embassy_executor::task]
@@ -16,7 +16,7 @@ pub async fn record_drive_faults() {
     // A driver whose start failed is in the log of the start.
     let (mut gate, mut motor) = (!gate::is_started(), false);
     loop {
-        Timer::after(LOOK).await;
+        Timer::after(POLL_PERIOD).await;
         let report = motor_report();
         let mut text = String::<FAULT_TEXT_BYTES>::new();
         // Longer text is cut.

@@ -8,7 +8,7 @@ use core::fmt::Write;
 use core::sync::atomic::{AtomicBool, Ordering};
 use devices::as5047::{Line, READ_ANGLE};
 use devices::drv8301::{Register, Status, data, is_present, read, write};
-use devices::slow::Slow;
+use devices::rotor_speed::RotorSpeedCheck;
 use devices::vesc6::{ENABLE_V, GATE_DRIVER, MOTOR};
 use embassy_stm32::gpio::Level;
 use embassy_stm32::pac::GPIOB;
@@ -50,15 +50,15 @@ pub(super) fn is_started() -> bool {
 /// Whether the rotor is slow, or becomes so in time: if turned by hand, its terminals must stay below [`ENABLE_V`].
 fn is_slow(encoder: &mut SoftSpi) -> bool {
     let most_turns_s = MOTOR.motor.turns_s_at(ENABLE_V);
-    let (mut line, mut slow) = (Line::default(), Slow::default());
+    let (mut line, mut check) = (Line::default(), RotorSpeedCheck::default());
     let end = Instant::now() + WAIT;
     while Instant::now() < end {
-        if slow.step(line.step(encoder.word(READ_ANGLE)), most_turns_s) {
+        if check.step(line.step(encoder.word(READ_ANGLE)), most_turns_s) {
             return true;
         }
         block_for(Duration::from_millis(1));
     }
-    match slow.turns_s {
+    match check.turns_s {
         Some(turns_s) => defmt::error!(
             "gate driver: left off, the motor turned at {=f32} turns/s, of {=f32} allowed",
             turns_s,

@@ -34,7 +34,7 @@ pub use flash::{Flash, StoreGuard, flash};
 pub use outputs::outputs_off;
 pub use reset::{end, log_stored_fault, reset_cause};
 pub use sensors::sense;
-pub use shared::{Report, order, report as motor_report};
+pub use shared::{Report, report as motor_report, set_command};
 pub use watchdog::feed_watchdog;
 
 use crate::failure;
@@ -68,7 +68,7 @@ pub fn start() -> MotorParts {
     }
     let peripherals = embassy_stm32::init(clock::config());
     time::start();
-    clock::quicken_flash();
+    clock::enable_flash_caches();
     start_parts(peripherals)
 }
 
@@ -165,7 +165,7 @@ fn UART5() {
 pub fn drive(command: &Command) -> Result<(), DriveError> {
     let wanted = command.torque_nm != 0.0 || matches!(command.mode, Mode::Engaged | Mode::Limp);
     let error = motor_report().error();
-    order(if wanted { MotorCommand::Torque(command.torque_nm) } else { MotorCommand::Off });
+    set_command(if wanted { MotorCommand::Torque(command.torque_nm) } else { MotorCommand::Off });
     leds::show(error.is_none());
     error.map_or(Ok(()), Err)
 }

@@ -1,6 +1,6 @@
 //! Motor interrupt: samples in, one call of the motor loop, duty cycles out, 20 000 times per second.
 
-use super::shared::{Report, is_held, is_off, newest_order, publish, set_off, temperature_c};
+use super::shared::{Report, is_held, is_off, newest_command, publish, set_off, temperature_c};
 use super::soft_spi::SoftSpi;
 use super::{adc, outputs_off, pwm};
 use core::cell::UnsafeCell;
@@ -61,7 +61,7 @@ pub(super) fn start(plan: Plan, driver: bool, encoder: SoftSpi, gate_fault: Inpu
     };
     // SAFETY: the interrupt is not enabled yet, so the cell has no other user.
     unsafe { *LOOP.0.get() = Some(motor) }
-    adc::forget();
+    adc::clear_pending();
     interrupt::ADC.unpend();
     // SAFETY: the interrupt enters no critical section, so it can preempt them.
     unsafe { interrupt::ADC.enable() }
@@ -85,20 +85,20 @@ impl Loop {
             // The driver has opened the switches itself; it stays enabled until its status is read.
             set_off();
         }
-        let (beat, requested) = newest_order();
-        let command = self.deadline.step(beat, requested, COMMAND_TIMEOUT_CALLS);
+        let (count, requested) = newest_command();
+        let command = self.deadline.step(count, requested, COMMAND_TIMEOUT_CALLS);
         let supply_v = SUPPLY.volt(counts.supply);
         let inputs = Inputs {
             phases: Phases::Three(counts.phases.map(|phase| SHUNT.ampere(phase))),
             bus_v: supply_v,
             angle_counts: self.report.encoder_counts,
-            angle_age_ticks: self.report.encoder_age,
+            angle_age_calls: self.report.encoder_age,
             temperature_c: temperature_c(),
             command: if is_off() || is_held() { MotorCommand::Off } else { command },
         };
         let out = motor::step(&self.plan, &mut self.state, &inputs);
         self.switch(&out);
-        let late = pwm::is_over() || adc::again();
+        let late = pwm::period_elapsed() || adc::next_conversion_ended();
         self.report = Report {
             calls: self.report.calls.wrapping_add(1),
             late: self.report.late.wrapping_add(u32::from(late)),

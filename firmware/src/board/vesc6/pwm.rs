@@ -70,11 +70,11 @@ pub(super) fn start(bridge: [Pin; 6]) -> bool {
     TIM1.egr().write(|w| w.set_ug(true));
     TIM1.rcr().write(|w| w.set_rep(1));
     TIM1.cr1().modify(|w| w.set_cen(true));
-    takes_over_at_top()
+    updates_at_top()
 }
 
 /// Whether the counter counts down just after an update, three times in a row.
-fn takes_over_at_top() -> bool {
+fn updates_at_top() -> bool {
     (0..3).all(|_| {
         TIM1.sr().modify(|w| w.set_uif(false));
         let came = (0..100_000).any(|_| TIM1.sr().read().uif());
@@ -89,13 +89,13 @@ pub(super) fn duties(duties: [f32; 3]) {
     }
 }
 
-/// Makes [`is_over`] refer to the next top.
+/// Makes [`period_elapsed`] refer to the next top.
 pub(super) fn begin() {
     TIM1.sr().modify(|w| w.set_uif(false));
 }
 
 /// Whether a top has passed since [`begin`]: duty cycles set after it act a period too late.
-pub(super) fn is_over() -> bool {
+pub(super) fn period_elapsed() -> bool {
     TIM1.sr().read().uif()
 }
 

@@ -82,7 +82,7 @@ impl Sensors {
         let now = Instant::now();
         let elapsed_us = now.saturating_duration_since(self.before).as_micros() as u32;
         self.before = now;
-        self.look_at_imu();
+        self.read_imu();
         let report = report();
         let running = report.calls != self.calls;
         self.calls = report.calls;
@@ -110,7 +110,7 @@ impl Sensors {
         }
     }
 
-    fn look_at_imu(&mut self) {
+    fn read_imu(&mut self) {
         let newest = self.imu.as_mut().map(imu::newest);
         // An IMU whose clock stops, or a stuck line, gives no new samples.
         let newest = newest.filter(|sample| sample.time != self.imu_time);
@@ -125,7 +125,7 @@ impl Sensors {
 
 /// Whether the encoder's angle is within the motor loop's timeout.
 fn fresh(report: &Report) -> bool {
-    report.encoder_age <= devices::vesc6::MOTOR.encoder.timeout_ticks
+    report.encoder_age <= devices::vesc6::MOTOR.encoder.timeout_calls
 }
 
 /// The newest value and its age; the stored value stays without a new one.

@@ -32,7 +32,7 @@ const FUNCTION: u8 = 7;
 const WAITING: usize = 2048;
 
 /// Polling period of the task.
-const LOOK: Duration = Duration::from_millis(1);
+const POLL_PERIOD: Duration = Duration::from_millis(1);
 
 type Half<T> = Mutex<CriticalSectionRawMutex, Option<T>>;
 static RX: Half<ReadableRingBuffer<'static, u8>> = Mutex::new(None);
@@ -72,7 +72,7 @@ pub async fn read(into: &mut [u8]) -> usize {
         if let Ok((taken @ 1.., _)) = ring.read(into) {
             return taken;
         }
-        Timer::after(LOOK).await;
+        Timer::after(POLL_PERIOD).await;
     }
 }
 

@@ -10,8 +10,8 @@ use motor::command_word;
 use motor::{Faults, Mode, MotorCommand};
 
 /// Command of control, encoded by `motor::command_word`, and a number that increments with each command.
-static ORDER: AtomicU32 = AtomicU32::new(u32::MAX);
-static BEAT: AtomicU32 = AtomicU32::new(0);
+static COMMAND: AtomicU32 = AtomicU32::new(u32::MAX);
+static COMMAND_COUNT: AtomicU32 = AtomicU32::new(0);
 /// Keeps the bridge open: until the next start, and during flash access.
 static OFF: AtomicBool = AtomicBool::new(false);
 static HOLD: AtomicBool = AtomicBool::new(false);
@@ -136,15 +136,15 @@ pub(super) fn publish(report: Report) {
 }
 
 /// Sends a command to the motor, valid until the next command or the timeout.
-pub fn order(command: MotorCommand) {
-    ORDER.store(command_word::word(command), Ordering::Relaxed);
-    BEAT.store(BEAT.load(Ordering::Relaxed).wrapping_add(1), Ordering::Release);
+pub fn set_command(command: MotorCommand) {
+    COMMAND.store(command_word::word(command), Ordering::Relaxed);
+    COMMAND_COUNT.store(COMMAND_COUNT.load(Ordering::Relaxed).wrapping_add(1), Ordering::Release);
 }
 
 /// The newest command and its number.
-pub(super) fn newest_order() -> (u32, MotorCommand) {
-    let beat = BEAT.load(Ordering::Acquire);
-    (beat, command_word::command(ORDER.load(Ordering::Relaxed)))
+pub(super) fn newest_command() -> (u32, MotorCommand) {
+    let count = COMMAND_COUNT.load(Ordering::Acquire);
+    (count, command_word::command(COMMAND.load(Ordering::Relaxed)))
 }
 
 /// Stores the temperature beside the bridge's switches \[deg C\].

@@ -19,7 +19,7 @@ const SELECT_CYCLES: u32 = 70;
 /// Samples per bit of encoder and gate driver, whose wires run beside the bridge's; the majority decides. The VESC
 /// firmware reads the encoder in the same way (`driver/spi_bb.c` in vedderb/bldc). The IMU's 152 bits per millisecond
 /// are sampled once.
-const LOOKS: u32 = 5;
+const SAMPLES_PER_BIT: u32 = 5;
 
 /// A bus with one device.
 pub(super) struct SoftSpi {
@@ -97,10 +97,10 @@ impl SoftSpi {
 
     /// The present bit of the device.
     fn bit(&self) -> u16 {
-        let looks = if self.edge == Edge::Falling { LOOKS } else { 1 };
+        let samples = if self.edge == Edge::Falling { SAMPLES_PER_BIT } else { 1 };
         let (port, pin) = self.from_part;
-        let high: u32 = (0..looks).map(|_| port.idr().read().0 >> pin & 1).sum();
-        u16::from(2 * high > looks)
+        let high: u32 = (0..samples).map(|_| port.idr().read().0 >> pin & 1).sum();
+        u16::from(2 * high > samples)
     }
 
     fn wait(&self) {

@@ -1,12 +1,12 @@
 //! Detection of a rotor slow enough to enable the gate driver.
 
 use devices::as5047::COUNTS;
-use devices::slow::Slow;
+use devices::rotor_speed::RotorSpeedCheck;
 use devices::vesc6::{ENABLE_V, MOTOR};
 
 /// The first millisecond of 500 in which a rotor of this speed counts as slow, from encoder counts.
 fn slow_after_ms(turns_s: f64, most_turns_s: f32) -> Option<usize> {
-    let mut slow = Slow::default();
+    let mut slow = RotorSpeedCheck::default();
     (0..500).position(|ms| {
         let turn = (0.9 + 1e-3 * turns_s * f64::from(ms)).rem_euclid(1.0);
         slow.step(Some((turn * f64::from(COUNTS)) as u16), most_turns_s)
@@ -31,7 +31,7 @@ fn the_limit_separates_slow_from_fast() {
 /// speed.
 #[test]
 fn without_samples_the_rotor_is_not_slow() {
-    let (mut silent, mut patchy) = (Slow::default(), Slow::default());
+    let (mut silent, mut patchy) = (RotorSpeedCheck::default(), RotorSpeedCheck::default());
     for ms in 0..500 {
         assert!(!silent.step(None, 32.0) && !patchy.step((ms % 2 == 0).then_some(77), 32.0));
         assert_eq!((silent.turns_s, patchy.turns_s), (None, None));

@@ -7,14 +7,14 @@ const ENOUGH: u8 = 10;
 
 /// State of the detection.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Slow {
+pub struct RotorSpeedCheck {
     counts: Option<u16>,
     slow: u8,
     /// Newest absolute speed \[turns/s\]; `None` before two consecutive samples.
     pub turns_s: Option<f32>,
 }
 
-impl Slow {
+impl RotorSpeedCheck {
     /// One millisecond with the encoder's counts, if valid; returns whether the rotor has been slower than
     /// `most_turns_s` for the last ten samples.
     pub fn step(&mut self, counts: Option<u16>, most_turns_s: f32) -> bool {
