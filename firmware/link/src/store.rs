@@ -38,19 +38,19 @@ pub const MIN_PAGES: usize = 3;
 
 /// Work memory of the store; kept outside the stack because of its size.
 #[derive(Debug)]
-pub struct Room {
+pub struct StoreBuffers {
     record: [u8; RECORD_BYTES],
     item: [u8; RECORD_BYTES + 64],
 }
 
-impl Room {
+impl StoreBuffers {
     /// Zeroed memory.
     pub const fn new() -> Self {
         Self { record: [0; RECORD_BYTES], item: [0; RECORD_BYTES + 64] }
     }
 }
 
-impl Default for Room {
+impl Default for StoreBuffers {
     fn default() -> Self {
         Self::new()
     }
@@ -135,11 +135,11 @@ impl<F: NorFlash> Store<F> {
     /// Loads the stored configuration, or `defaults`. The result passes `Config::plan` if `defaults` does.
     /// `polarity_checked` is cleared, so that the controller requires a new check, if the record is missing or invalid,
     /// if one of its values is rejected, or if it lacks a calibration parameter.
-    pub async fn load(&mut self, defaults: &Config, room: &mut Room) -> (Config, Found) {
+    pub async fn load(&mut self, defaults: &Config, buffers: &mut StoreBuffers) -> (Config, Found) {
         let mut unchecked = defaults.clone();
         unchecked.calibration.polarity_checked = false;
         let mut config = unchecked.clone();
-        let found = match self.newest(&mut room.item).await {
+        let found = match self.newest(&mut buffers.item).await {
             Ok(None) => Found::Nothing,
             Err(invalid) => Found::Invalid(invalid),
             Ok(Some(record)) => {
@@ -168,9 +168,9 @@ impl<F: NorFlash> Store<F> {
     ///
     /// # Errors
     /// As of [`NotStored`].
-    pub async fn save(&mut self, config: &Config, room: &mut Room) -> Result<(), NotStored> {
+    pub async fn save(&mut self, config: &Config, buffers: &mut StoreBuffers) -> Result<(), NotStored> {
         config.clone().plan().map_err(NotStored::Rejected)?;
-        let Room { record: bytes, item } = room;
+        let StoreBuffers { record: bytes, item } = buffers;
         let newest = self.number(PARAMETERS, item).await.ok().flatten().unwrap_or_default();
         let before = self.record(item).await.ok().flatten();
         let number = before.map_or(0, |before| before.number).max(newest).wrapping_add(1);
@@ -192,8 +192,11 @@ impl<F: NorFlash> Store<F> {
     ///
     /// # Errors
     /// The reason why the stored alignment is invalid.
-    pub async fn alignment(&mut self, room: &mut Room) -> Result<Option<Alignment>, InvalidRecord> {
-        let numbered = self.numbered_alignment(&mut room.item).await?;
+    pub async fn alignment(
+        &mut self,
+        buffers: &mut StoreBuffers,
+    ) -> Result<Option<Alignment>, InvalidRecord> {
+        let numbered = self.numbered_alignment(&mut buffers.item).await?;
         Ok(numbered.map(|(_, alignment)| alignment))
     }
 
@@ -204,8 +207,12 @@ impl<F: NorFlash> Store<F> {
     ///
     /// # Errors
     /// [`NotStored::Flash`].
-    pub async fn save_alignment(&mut self, alignment: &Alignment, room: &mut Room) -> Result<(), NotStored> {
-        let Room { record: parameters, item } = room;
+    pub async fn save_alignment(
+        &mut self,
+        alignment: &Alignment,
+        buffers: &mut StoreBuffers,
+    ) -> Result<(), NotStored> {
+        let StoreBuffers { record: parameters, item } = buffers;
         let newest = self.number(ALIGNMENT, item).await.ok().flatten().unwrap_or_default();
         let before = self.stored_alignment(item).await.ok().flatten();
         let number = before.map_or(0, |(number, _)| number).max(newest).wrapping_add(1);

@@ -10,7 +10,7 @@ use embassy_sync::blocking_mutex::raw::CriticalSectionRawMutex;
 use link::Store;
 use link::alignment::{Alignment, Offset};
 use link::record::InvalidRecord;
-use link::store::{Found, NotStored, Room};
+use link::store::{Found, NotStored, StoreBuffers};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// A plan for the controller.
@@ -80,7 +80,7 @@ pub(super) fn take_pending_plan(mode: Mode, torque_nm: f32) -> Option<(Plan, u32
 pub struct StoredConfig {
     /// Store in the board's flash; `None` if the board has none.
     store: Option<Store<board::Flash>>,
-    room: &'static mut Room,
+    buffers: &'static mut StoreBuffers,
     found: Found,
     offset: Option<Offset>,
 }
@@ -91,9 +91,9 @@ impl StoredConfig {
     /// # Panics
     /// When called a second time.
     pub fn open() -> Self {
-        static ROOM: ConstStaticCell<Room> = ConstStaticCell::new(Room::new());
+        static BUFFERS: ConstStaticCell<StoreBuffers> = ConstStaticCell::new(StoreBuffers::new());
         let store = board::flash().and_then(|(flash, range)| Store::new(flash, range));
-        Self { store, room: ROOM.take(), found: Found::Nothing, offset: None }
+        Self { store, buffers: BUFFERS.take(), found: Found::Nothing, offset: None }
     }
 
     /// Loads the stored configuration, or the defaults with `polarity_checked` cleared.
@@ -103,7 +103,7 @@ impl StoredConfig {
             unchecked.calibration.polarity_checked = false;
             return unchecked;
         };
-        let (config, found) = store.load(defaults, self.room).await;
+        let (config, found) = store.load(defaults, self.buffers).await;
         self.found = found;
         config
     }
@@ -116,7 +116,7 @@ impl StoredConfig {
     /// Chooses the encoder offset at start: the program's own, else the stored one of this motor.
     pub fn choose_offset(&mut self, program: Option<f32>, motor_id: u32) -> Offset {
         let stored = match &mut self.store {
-            Some(store) => block_on(store.alignment(self.room)),
+            Some(store) => block_on(store.alignment(self.buffers)),
             None => Err(InvalidRecord::Unreadable),
         };
         *self.offset.insert(Offset::choose(program, stored, motor_id))
@@ -134,7 +134,7 @@ impl StoredConfig {
     pub async fn save_alignment(&mut self, alignment: &Alignment) -> Result<(), NotStored> {
         let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
         let _storing = Storing::begin();
-        store.save_alignment(alignment, self.room).await
+        store.save_alignment(alignment, self.buffers).await
     }
 
     /// Stores a configuration. The chip can halt while the flash erases, so call this only while no torque flows.
@@ -144,7 +144,7 @@ impl StoredConfig {
     pub async fn save(&mut self, config: &Config) -> Result<(), NotStored> {
         let Some(store) = &mut self.store else { return Err(NotStored::Flash) };
         let _storing = Storing::begin();
-        store.save(config, self.room).await
+        store.save(config, self.buffers).await
     }
 }
 

@@ -5,7 +5,7 @@ use embassy_futures::block_on;
 use embedded_storage_async::nor_flash::{ErrorType, NorFlash, NorFlashErrorKind, ReadNorFlash};
 use link::Store;
 use link::alignment::Alignment;
-use link::store::{NotStored, Room};
+use link::store::{NotStored, StoreBuffers};
 use std::ops::Range;
 
 /// Sectors 1 to 3 of the flash, which hold the store (docs/hardware.md).
@@ -19,10 +19,10 @@ const STORE: Range<u32> = 0x4000..0x1_0000;
 pub fn stored(config: &Config, offset_turns: f32) -> Result<Vec<u8>, NotStored> {
     let erased = Flash(vec![0xff; STORE.end as usize]);
     let mut store = Store::new(erased, STORE).ok_or(NotStored::Flash)?;
-    let room = &mut Room::new();
-    block_on(store.save(config, room))?;
+    let buffers = &mut StoreBuffers::new();
+    block_on(store.save(config, buffers))?;
     let alignment = Alignment { offset_turns, motor_id: devices::vesc6::MOTOR.motor_id() };
-    block_on(store.save_alignment(&alignment, room))?;
+    block_on(store.save_alignment(&alignment, buffers))?;
     Ok(store.into_flash().0.split_off(STORE.start as usize))
 }
 

@@ -7,7 +7,7 @@ use embedded_storage_async::nor_flash::{
 use link::Store;
 use link::alignment::Alignment;
 use link::record::InvalidRecord;
-use link::store::{Found, NotStored, Room};
+use link::store::{Found, NotStored, StoreBuffers};
 
 /// Page size \[bytes\]: a few records, so that pages change often.
 pub(crate) const PAGE: usize = 8192;
@@ -165,7 +165,7 @@ impl NorFlash for Flash {
 pub(crate) fn load(flash: Flash, defaults: &control::Config) -> (control::Config, Found, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
-    let (config, found) = block_on(store.load(defaults, &mut Room::new()));
+    let (config, found) = block_on(store.load(defaults, &mut StoreBuffers::new()));
     (config, found, store.into_flash())
 }
 
@@ -173,7 +173,7 @@ pub(crate) fn load(flash: Flash, defaults: &control::Config) -> (control::Config
 pub(crate) fn save(flash: Flash, config: &control::Config) -> (Result<(), NotStored>, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
-    let done = block_on(store.save(config, &mut Room::new()));
+    let done = block_on(store.save(config, &mut StoreBuffers::new()));
     (done, store.into_flash())
 }
 
@@ -181,7 +181,7 @@ pub(crate) fn save(flash: Flash, config: &control::Config) -> (Result<(), NotSto
 pub(crate) fn load_alignment(flash: Flash) -> (Result<Option<Alignment>, InvalidRecord>, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
-    let found = block_on(store.alignment(&mut Room::new()));
+    let found = block_on(store.alignment(&mut StoreBuffers::new()));
     (found, store.into_flash())
 }
 
@@ -189,6 +189,6 @@ pub(crate) fn load_alignment(flash: Flash) -> (Result<Option<Alignment>, Invalid
 pub(crate) fn save_alignment(flash: Flash, alignment: &Alignment) -> (Result<(), NotStored>, Flash) {
     let range = 0..flash.bytes.len() as u32;
     let mut store = Store::new(flash, range).expect("a range of pages");
-    let done = block_on(store.save_alignment(alignment, &mut Room::new()));
+    let done = block_on(store.save_alignment(alignment, &mut StoreBuffers::new()));
     (done, store.into_flash())
 }
