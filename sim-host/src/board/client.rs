@@ -11,8 +11,8 @@ use std::time::{Duration, Instant, SystemTime};
 
 /// Number of unsolicited messages stored for [`Client::listen`]; the newest are kept.
 const UNSOLICITED_MAX: usize = 4096;
-/// Longest time a board takes to erase and write its flash, with a large margin.
-const STORING: Duration = Duration::from_secs(5);
+/// Longest time after which a board has stored or restarted: its supervision waits 8 s for a store, its watchdog then 2 s.
+const STORING: Duration = Duration::from_secs(11);
 
 /// Timeout and number of attempts of a request.
 #[derive(Clone, Copy, Debug)]

@@ -37,7 +37,7 @@ impl Axis {
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Method {
-    /// Long steps find the borders and exact rides confirm them, if no more acts than controller, constant delays and rider; else as plain.
+    /// Long steps find the borders and exact rides confirm them, if only controller, constant delays, a lag of the motor and rider act; otherwise as plain.
     #[default]
     Fast,
     /// Every ride exact and to its end.
