@@ -1,7 +1,7 @@
 //! Sensor inputs of the control step: the newest samples with their ages.
 
 use super::imu;
-use super::shared::{Report, report, set_temperature};
+use super::shared::{Report, is_held, report, set_temperature};
 use super::soft_spi::SoftSpi;
 use super::wheels::Edges;
 use ::motor::Mode;
@@ -90,8 +90,12 @@ impl Sensors {
         let [front, rear] =
             [0, 1].map(|i| wheel::step(&self.wheel, &mut self.wheels[i], self.edges[i].age_us(), elapsed_us));
         let closed = report.switch < SWITCH_COUNTS;
-        // A drive that can't give torque reports nothing, so control does not engage.
-        let able = matches!(report.mode, Mode::Ready | Mode::Running) && !report.gate_fault && !report.off;
+        // A drive that can't give torque reports nothing, so control does not engage: not during a store either, at whose end the
+        // torque of an engaged assist would begin with a step.
+        let able = matches!(report.mode, Mode::Ready | Mode::Running)
+            && !report.gate_fault
+            && !report.off
+            && !is_held();
         SensorFrame {
             now_us: now.as_micros() as u32,
             gyro_rad_s: Triple { value: self.gyro.0, age_ticks: self.gyro.1.now() },
