@@ -2,7 +2,7 @@
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
@@ -130,8 +130,13 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for OrNone<T> {
             fn visit_f64<E: Error>(self, x: f64) -> Result<OrNone<T>, E> {
                 T::deserialize(serde::de::value::F64Deserializer::new(x)).map(OrNone::At)
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, items: A) -> Result<OrNone<T>, A::Error> {
-                T::deserialize(SeqAccessDeserializer::new(items)).map(OrNone::At)
+            fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<OrNone<T>, A::Error> {
+                let value = T::deserialize(SeqAccessDeserializer::new(&mut items))?;
+                // toml 1.2 reads an array of fixed length from a longer one.
+                match items.next_element::<IgnoredAny>()? {
+                    None => Ok(OrNone::At(value)),
+                    Some(_) => Err(A::Error::custom("invalid length: more elements than expected")),
+                }
             }
             fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<OrNone<T>, A::Error> {
                 T::deserialize(MapAccessDeserializer::new(map)).map(OrNone::At)

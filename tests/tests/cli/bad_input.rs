@@ -49,6 +49,28 @@ fn wrong_parameter_files() {
     assert_rejected(&bench, "eigen --bicycle empty.toml", &["empty.toml", "`w` is missing"]);
 }
 
+/// Situation: arrays with a number too many, in a scenario in TOML and in JSON and in a sensor model.
+/// Action: use them.
+/// Must hold: rejected with the file and the length; the TOML parser leaves out what is too many.
+#[test]
+fn longer_arrays_than_expected_are_rejected() {
+    let bench = Bench::new(PROGRAM);
+    bench.write("long.toml", "taper_m_s = [1.0, 2.0, 3.0]\n");
+    bench.write("long.json", r#"{"taper_m_s": [1.0, 2.0, 3.0]}"#);
+    for name in ["long.toml", "long.json"] {
+        assert_rejected(&bench, &format!("ride --scenario {name} --speed 4"), &[name, "taper_m_s", "length"]);
+    }
+    let shipped = std::fs::read_to_string(repository("data/sensors/encoders-robot.toml")).unwrap();
+    for longer in ["jitter_s = [1e-3, ", "vibration = [[1e-3, 1e-3, 1e-3, 1e-3, 1e-3]]\njitter_s = ["] {
+        bench.write("sensor.toml", shipped.replacen("jitter_s = [", longer, 1));
+        assert_rejected(
+            &bench,
+            "ride --speed 4 --preset product --sensor sensor.toml",
+            &["sensor.toml", "length"],
+        );
+    }
+}
+
 /// Situation: a file of nothing, one of a remark, and such with the keys that are not values.
 /// Action: give it to each option that reads a file.
 /// Must hold: rejected with the file, and with what is expected; nothing of it is repeated.

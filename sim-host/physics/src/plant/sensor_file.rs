@@ -3,7 +3,8 @@
 
 use super::{FittedErrors, PlantError, Sensor, SensorConfig, SensorModel};
 use crate::range::{RangeError, within};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 use std::path::Path;
 
 /// The shipped models, by name.
@@ -46,6 +47,26 @@ pub struct SensorFile {
     pub motor_report: Option<SensorNumbers>,
 }
 
+/// An array of exactly `N` numbers: toml 1.2 reads one of fixed length from a longer one.
+struct Exactly<const N: usize>([f64; N]);
+
+impl<'de, const N: usize> Deserialize<'de> for Exactly<N> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let numbers = Vec::<f64>::deserialize(deserializer)?;
+        let count = numbers.len();
+        let exactly = numbers.try_into().map(Self);
+        exactly.map_err(|_| Error::invalid_length(count, &format!("{N} numbers").as_str()))
+    }
+}
+
+fn pair<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[f64; 2]>, D::Error> {
+    Ok(Option::<Exactly<2>>::deserialize(deserializer)?.map(|pair| pair.0))
+}
+
+fn octaves<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<[f64; 4]>, D::Error> {
+    Ok(Vec::<Exactly<4>>::deserialize(deserializer)?.into_iter().map(|octaves| octaves.0).collect())
+}
+
 /// Numbers of one sensor; omitted ones are exact. Numbers by axis have as many values as the sensor has axes,
 /// in the sensor's unit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
@@ -56,6 +77,7 @@ pub struct SensorNumbers {
     /// Offset of the sampling instants from the whole multiples of the period \[s\].
     pub phase_s: Option<f64>,
     /// Random delay \[s\]: largest of 99 in 100 samples, and largest of all.
+    #[serde(deserialize_with = "pair")]
     pub jitter_s: Option<[f64; 2]>,
     /// Time from the measurement to its arrival \[s\].
     pub delay_s: Option<f64>,
@@ -75,6 +97,7 @@ pub struct SensorNumbers {
     pub bias_spread: Vec<f64>,
     /// Root mean square of the vibration in the octaves from 10, 20, 40 and 80 Hz, by axis, per 1 m/s of
     /// speed.
+    #[serde(deserialize_with = "octaves")]
     pub vibration: Vec<[f64; 4]>,
     /// Measured numbers with intervals, for information only.
     pub measured: Vec<MeasuredNumber>,
