@@ -70,7 +70,7 @@ fn a_thousand_random_states_of_all_bicycles_accelerate_alike() {
 
 /// Situation: the same random states, with all six speeds as state.
 /// Action: their accelerations.
-/// Holds: they are those of Newton's and Euler's equations, the dependent ones too.
+/// Must hold: they are those of Newton's and Euler's equations, the dependent ones too.
 #[test]
 fn six_speeds_accelerate_alike() {
     let count = Cell::new(0);

@@ -218,7 +218,7 @@ mod tests {
 
     /// Situation: roll, steer and speeds away from singular configurations.
     /// Action: the accelerations with each choice of the independent speeds, and those of the three-speed equations.
-    /// Holds: all are the same.
+    /// Must hold: all are the same.
     #[test]
     fn every_choice_of_independent_speeds_gives_the_same_accelerations() {
         let shipped = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters.to_values();
@@ -238,7 +238,8 @@ mod tests {
             for (pitch, yaw) in [(true, true), (true, false), (false, true), (false, false)] {
                 let constraints = Constraints::with(&b, &pose, pitch, yaw);
                 let rate = full.rate_under(&b, &pose, &constraints, &torques).unwrap().speeds;
-                let pairs = [(rate[0], three.roll), (rate[3], three.steer), (rate[4], three.rear_wheel)];
+                let pairs =
+                    [(rate[ROLL], three.roll), (rate[STEER], three.steer), (rate[REAR], three.rear_wheel)];
                 for (six, three) in pairs {
                     assert!(
                         (six - three).abs() < 1e-9 * (1.0 + three.abs()),
