@@ -50,8 +50,6 @@ pub mod sweep;
 pub mod thesis;
 pub mod weave;
 
+pub use analysis::{eigen, identify, tracking};
 use physics::json;
-pub use physics::{
-    basin, bicycle, eigen, identify, input_file, integrate, num, perturbation, plant, range, ride, rider,
-    tracking,
-};
+pub use physics::{basin, bicycle, input_file, integrate, num, perturbation, plant, range, ride, rider};

@@ -1,5 +1,5 @@
 //! The physics of the simulator: a nonlinear Whipple bicycle with rider, sensors and actuator, steered by the flashed
-//! control crate; its rides, basins of attraction and eigenvalues.
+//! control crate; its rides and basins of attraction.
 //!
 //! ```
 //! use control::{Config, Law};
@@ -24,15 +24,10 @@
 
 pub mod basin;
 pub mod bicycle;
-pub mod closed_loop;
-pub mod eigen;
-pub mod identify;
 pub mod input_file;
 pub mod json;
 pub mod perturbation;
 pub mod plant;
 pub mod rider;
-pub mod tracking;
-pub mod weave;
 
 pub use motion::{integrate, num, range, ride};

@@ -1,8 +1,8 @@
 //! Recordings of the weave after a disturbance, in files: `record` reads one, `label` its name, and `measured` is the stored
-//! table. The measurement itself is in the crate `physics`, whose modules are passed on.
+//! table. The measurement itself is in the crate `analysis`, whose modules are passed on.
 
 pub mod label;
 pub mod measured;
 pub mod record;
 
-pub use physics::weave::{Estimate, fit, noise, pool, predict, segment, shape, student, window};
+pub use analysis::weave::{Estimate, fit, noise, pool, predict, segment, shape, student, window};

@@ -3,8 +3,8 @@
 
 use crate::recording::cut_line;
 use crate::recording::stamp::seconds;
+pub use analysis::weave::record::{Axis, Record};
 use csv::StringRecord;
-pub use physics::weave::record::{Axis, Record};
 
 /// Names of time columns searched for by default.
 pub const TIMES: [&str; 4] = ["Time", "time", "t", "time_s"];

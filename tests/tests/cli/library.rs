@@ -19,7 +19,8 @@ fn dependencies(arguments: &[&str]) -> Vec<String> {
 }
 
 /// Situation: another program uses the library without its default features. Action: list the crates that it then needs, and those
-/// of the program. Must hold: no crate of the terminal or the command line in the first list, each in the second; `physics` in both.
+/// of the program. Must hold: no crate of the terminal or the command line in the first list, each in the second; `physics` and `analysis` in
+/// both.
 #[test]
 fn the_library_needs_no_terminal() {
     let (library, program) = (dependencies(&["--no-default-features"]), dependencies(&[]));
@@ -28,6 +29,8 @@ fn the_library_needs_no_terminal() {
         assert!(!has(&library, name), "{name} is needed by the library");
         assert!(has(&program, name), "{name} is not needed by the program either");
     }
-    assert!(has(&library, "physics") && has(&program, "physics"));
+    for name in ["physics", "analysis"] {
+        assert!(has(&library, name) && has(&program, name), "{name}");
+    }
     assert!(library.len() < program.len());
 }

@@ -13,8 +13,7 @@ mod record;
 pub use error::PerturbationError;
 pub use noise::{Drift, Remnant, SensorNoise};
 pub use pulses::Pulses;
-pub use record::{Record, RecordSample, record};
-pub(crate) use record::{SPEED_HOLD_S, nearest_steps};
+pub use record::{Record, RecordSample, SPEED_HOLD_S, nearest_steps, record};
 
 use crate::bicycle::ForcePoint;
 use crate::range::within;

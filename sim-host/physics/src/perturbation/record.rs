@@ -7,7 +7,7 @@ use crate::ride::{Assist, Conditions, FallCause, Perturbed, Push, perturbed};
 use serde::Serialize;
 
 /// Time constant with which the rider holds the belt's speed by pedalling \[s\].
-pub(crate) const SPEED_HOLD_S: f64 = 1.0;
+pub const SPEED_HOLD_S: f64 = 1.0;
 
 /// Longest and shortest time step of the integration \[s\].
 const STEPS_S: [f64; 2] = [2.5e-4, 1e-5];
@@ -153,8 +153,9 @@ fn rounding(delay_s: f64, sample_s: f64, steps: u32) -> f64 {
     (delay - delay.round()).abs()
 }
 
-/// The fewest time steps per sample of which the delay is a multiple, too; otherwise those that round it least.
-pub(crate) fn nearest_steps(delay_s: f64, sample_s: f64) -> (u32, f64) {
+/// The fewest time steps per sample of which the delay is a multiple, too; otherwise those that round it least: their number
+/// and their length \[s\].
+pub fn nearest_steps(delay_s: f64, sample_s: f64) -> (u32, f64) {
     let all = || fewest(sample_s)..=CHOICE * fewest(sample_s);
     let whole = all().find(|steps| rounding(delay_s, sample_s, *steps) < WHOLE);
     let rounding_s = |steps: &u32| rounding(delay_s, sample_s, *steps) / f64::from(*steps);

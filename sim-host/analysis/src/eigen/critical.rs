@@ -1,9 +1,9 @@
 //! Critical speeds of straight riding without a rider, from the linearised bicycle and a law.
 
 use super::eigenvalues;
-use crate::bicycle::linear::Linear;
 use control::Law;
 use nalgebra::{Complex, ComplexField};
+use physics::bicycle::linear::Linear;
 
 /// Upper end of the search for critical speeds \[m/s\].
 pub const SEARCH_TO_M_S: f64 = 20.0;

@@ -1,6 +1,6 @@
 //! Differential evolution (Storn and Price 1997, scheme rand/1/bin): a global search that needs no derivatives.
 
-use crate::num::RandomStream;
+use physics::num::RandomStream;
 use rayon::prelude::*;
 
 /// Purpose of the random numbers.

@@ -7,7 +7,7 @@ use super::objective::{Drift, Objective};
 use super::record::Record;
 use super::response::{Discrete, Disturbances, Hold};
 use super::spectrum::Spectrum;
-use crate::rider::{Row, catalogue};
+use physics::rider::{Row, catalogue};
 use rayon::prelude::*;
 
 /// Order of magnitude of each gain: half the largest of Tables F.3, G.3, J.1 of Kuipers 2020, rounded. It scales the

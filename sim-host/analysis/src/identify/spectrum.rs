@@ -5,8 +5,8 @@
 use super::gray_box::{GAINS, GrayBox, PerGain};
 use super::record::{Measured, Record};
 use super::response::{Hold, Signal};
-use crate::rider::Neuromuscular;
 use nalgebra::{Complex, DMatrix, DVector, Matrix2, Vector2};
+use physics::rider::Neuromuscular;
 use std::f64::consts::TAU;
 
 /// Highest frequency in use \[Hz\]: a rider's bandwidth is below 3 Hz.

@@ -7,10 +7,10 @@ use super::objective::Objective;
 use super::response::Hold;
 use super::uncertainty::{Uncertainty, uncertainty};
 use super::{AFTER_ONSET_S, GrayBox, PerGain, rightmost_real};
-use crate::bicycle::{ForcePoint, Geometry};
-use crate::perturbation::{SPEED_HOLD_S, nearest_steps};
-use crate::ride::{Assist, Conditions, Perturbed, Push, ScheduleSpeed, perturbed};
-use crate::rider::{Gains, Outside, Rider, Schedule};
+use physics::bicycle::{ForcePoint, Geometry};
+use physics::perturbation::{SPEED_HOLD_S, nearest_steps};
+use physics::ride::{Assist, Conditions, Perturbed, Push, ScheduleSpeed, perturbed};
+use physics::rider::{Gains, Outside, Rider, Schedule};
 
 /// Time constant with which the ride follows a recorded speed \[s\]: the noise of a wheel's sensor is averaged.
 const FOLLOWED_S: f64 = 0.05;

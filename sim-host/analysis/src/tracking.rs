@@ -1,9 +1,9 @@
 //! Gains of `control::law::path_tracking`, from bicycle, speed, law gain and weights: the linear-quadratic
 //! regulator of the linearised bicycle stabilised by the law.
 
-use crate::bicycle::Parameters;
-use crate::bicycle::linear::Linear;
 use nalgebra::{Matrix1, RowSVector, SMatrix, SVector};
+use physics::bicycle::Parameters;
+use physics::bicycle::linear::Linear;
 
 const N: usize = 7;
 type Square = SMatrix<f64, N, N>;

@@ -1,9 +1,9 @@
 //! The gray box: a linear bicycle at constant speed under a lateral force and a steer torque disturbance, closed by a
 //! delayed rider whose feedback gains are unknown (Kuipers 2020, figure 2.4).
 
-use crate::bicycle::linear::Linear;
-use crate::rider::{KEYS, Neuromuscular};
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
+use physics::bicycle::linear::Linear;
+use physics::rider::{KEYS, Neuromuscular};
 
 /// The number of gains that are identified: the first of [`KEYS`], on roll (p, i, d, dd), then on steer. Gains on
 /// heading and lateral deviation need a measured path and are not part of the thesis's rider.

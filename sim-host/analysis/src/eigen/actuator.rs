@@ -1,6 +1,6 @@
 //! Linear model of the motor and its gear.
 
-use crate::range::{RangeError, within, within_key};
+use physics::range::{RangeError, within, within_key};
 
 /// Deviation of the torque on the steer axis from the requested one, and the friction and inertia that motor,
 /// gear and bearings add. The default is exact and adds none.

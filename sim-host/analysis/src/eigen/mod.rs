@@ -21,9 +21,9 @@ pub use roots::{rightmost, roots};
 pub use stability::{Crossing, Stability, StabilityChange, stability, stability_until};
 pub use system::{DelaySystem, Model};
 
-use crate::bicycle::linear::Linear;
 use control::Law;
 use nalgebra::Complex;
+use physics::bicycle::linear::Linear;
 use rayon::prelude::*;
 
 /// The four eigenvalues \[1/s\] at speed `v` \[m/s\] without a rider: largest real part first; of a conjugate

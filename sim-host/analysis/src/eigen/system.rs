@@ -2,10 +2,10 @@
 
 use super::actuator::{ActuatorError, LinearActuator};
 use super::feedback::{Feedback, StaticFeedback};
-use crate::bicycle::{Parameters, linear::Linear};
-use crate::rider::{Gains, Rider};
 use control::Law;
 use nalgebra::{Complex, ComplexField, DMatrix, DVector, RowDVector};
+use physics::bicycle::{Parameters, linear::Linear};
+use physics::rider::{Gains, Rider};
 
 /// `x' = a x + b z(t - delay)`, `z = k x`; in the usual form `A0 = a`, `A1 = b k`. Only the signal `z` is
 /// delayed.
@@ -59,7 +59,7 @@ pub struct Model {
     integrals: [bool; 4],
 }
 
-/// Indices in [`crate::rider::KEYS`] of the gains of [`Model::integrals`].
+/// Indices in [`physics::rider::KEYS`] of the gains of [`Model::integrals`].
 const INTEGRAL_KEYS: [usize; 4] = [1, 5, 8, 9];
 
 impl Model {

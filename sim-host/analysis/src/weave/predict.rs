@@ -1,9 +1,9 @@
 //! The weave of the linear model at given speeds.
 
-use crate::bicycle::Parameters;
 use crate::eigen::{ActuatorError, Feedback, LinearActuator, Model, roots};
 use control::Law;
 use nalgebra::{Complex, ComplexField};
+use physics::bicycle::Parameters;
 
 /// Upper eigenvalue of the weave \[1/s\] of a bicycle with a law and an actuator, at each of the speeds
 /// \[m/s\]; `None` without a complex pair. At low speed caster and capsize can form a pair, too; the weave is

@@ -1,0 +1,8 @@
+//! Linear analysis and identification: eigenvalues of the linearised bicycle with assist and delayed rider, gains of path
+//! tracking, and what recordings say of a rider, of a controller or of the weave.
+
+pub mod closed_loop;
+pub mod eigen;
+pub mod identify;
+pub mod tracking;
+pub mod weave;
