@@ -50,6 +50,6 @@ pub mod sweep;
 pub mod thesis;
 pub mod weave;
 
-pub use analysis::{eigen, identify, tracking};
+pub use analysis::{eigen, exponential, identify, tracking};
 use physics::json;
 pub use physics::{basin, bicycle, input_file, integrate, num, perturbation, plant, range, ride, rider};

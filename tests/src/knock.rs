@@ -3,6 +3,7 @@
 use nalgebra::{Complex, DVector};
 use sim_host::bicycle::Parameters;
 use sim_host::eigen::{Feedback, LinearActuator, Model, roots};
+use sim_host::exponential::exponential;
 use sim_host::weave::record::{Axis, Record};
 
 /// Pseudo-random numbers, the same in every run (SplitMix64).
@@ -76,7 +77,7 @@ impl Knocked {
         let a = system.undelayed();
         const FINE: usize = 20;
         let step_s = 1.0 / (how.rate_hz * FINE as f64);
-        let whole = (&a * step_s).exp();
+        let whole = exponential(&(&a * step_s));
         let mut pushed = DVector::zeros(a.nrows());
         // Roll and, depending on the push, some steer.
         (pushed[2], pushed[3]) = (1.0, random.normal());

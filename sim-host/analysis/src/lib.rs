@@ -3,6 +3,7 @@
 
 pub mod closed_loop;
 pub mod eigen;
+pub mod exponential;
 pub mod identify;
 pub mod tracking;
 pub mod weave;

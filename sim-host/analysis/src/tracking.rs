@@ -1,6 +1,7 @@
 //! Gains of `control::law::path_tracking`, from bicycle, speed, law gain and weights: the linear-quadratic
 //! regulator of the linearised bicycle stabilised by the law.
 
+use crate::exponential::exponential_of;
 use nalgebra::{Matrix1, RowSVector, SMatrix, SVector};
 use physics::bicycle::Parameters;
 use physics::bicycle::linear::Linear;
@@ -59,7 +60,7 @@ pub fn gains(p: &Parameters, v: f64, law_gain: f64, weights: &Weights) -> RowSVe
     let mut both = SMatrix::<f64, 8, 8>::zeros();
     both.fixed_view_mut::<N, N>(0, 0).copy_from(&(a * PERIOD_S));
     both.fixed_view_mut::<N, 1>(0, N).copy_from(&(b * PERIOD_S));
-    let sampled = both.exp();
+    let sampled = exponential_of(&both);
     let a: Square = sampled.fixed_view::<N, N>(0, 0).into();
     let b: SVector<f64, N> = sampled.fixed_view::<N, 1>(0, N).into();
     let torque = weights.torque * PERIOD_S;

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use sim_host::bicycle::linear::Linear;
 use sim_host::bicycle::{ForcePoint, Motion, State};
 use sim_host::eigen::{Feedback, Model};
+use sim_host::exponential::exponential;
 use sim_host::perturbation::{
     Drift, Experiment, PerturbationError, Record, RecordSample, Remnant, SensorNoise, record,
 };
@@ -86,7 +87,7 @@ fn a_small_pushed_ride_is_the_linear_closed_loop() {
         let mut block = DMatrix::zeros(n + 1, n + 1);
         block.view_mut((0, 0), (n, n)).copy_from(&matrix);
         block.view_mut((0, n), (n, 1)).copy_from(&input(push));
-        let step = (block * SAMPLE_S).exp();
+        let step = exponential(&(block * SAMPLE_S));
         x = step.view((0, 0), (n, n)) * &x + step.view((0, n), (n, 1));
     }
     println!("a pushed ride is off the linear closed loop by {worst:.1e}");

@@ -2,6 +2,7 @@
 //! neural signal that is a polynomial in each interval.
 
 use super::gray_box::{GAINS, GrayBox, INPUTS, OpenLoop, STATES};
+use crate::exponential::exponential_of;
 use nalgebra::{SMatrix, SVector};
 
 /// Points of an interval at which the neural signal is stored: Chebyshev-Lobatto points, both ends included, so that
@@ -79,13 +80,7 @@ fn flow(
         (initial[(place, source)], initial[(place, source + 1)]) = (1.0 - position, position);
         (initial[(place + 1, source)], initial[(place + 1, source + 1)]) = (-1.0, 1.0);
     }
-    (exponential(&(generator * duration_s)) * initial).fixed_view::<STATES, SOURCES>(0, 0).into_owned()
-}
-
-/// Matrix exponential.
-pub(super) fn exponential<const N: usize>(matrix: &SMatrix<f64, N, N>) -> SMatrix<f64, N, N> {
-    let dynamic = nalgebra::DMatrix::from_column_slice(N, N, matrix.as_slice());
-    SMatrix::from_column_slice(dynamic.exp().as_slice())
+    (exponential_of(&(generator * duration_s)) * initial).fixed_view::<STATES, SOURCES>(0, 0).into_owned()
 }
 
 impl Interval {

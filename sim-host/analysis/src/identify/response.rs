@@ -1,7 +1,8 @@
 //! Response of the gray box to recorded disturbances, with its exact derivatives with respect to the gains.
 
 use super::gray_box::{GAINS, GrayBox, INPUTS, PerGain, STATES};
-use super::interval::{Interval, NODES, OfSources, SOURCES, exponential};
+use super::interval::{Interval, NODES, OfSources, SOURCES};
+use crate::exponential::exponential_of;
 use nalgebra::{SMatrix, SVector};
 
 /// Measured quantities that a model can be fitted to.
@@ -282,7 +283,7 @@ fn undelayed(
             generator.fixed_view_mut::<STATES, 1>(STATES, place).copy_from(&direct);
             generator[(place, place + 1)] = 1.0;
         }
-        exponential(&(generator * sample_s))
+        exponential_of(&(generator * sample_s))
     };
     let steps: Vec<_> = (0..if tangents { GAINS } else { 1 }).map(step).collect();
     let forced = |of: &SMatrix<f64, BOTH, BOTH>, first: usize| {
