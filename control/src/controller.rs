@@ -33,7 +33,7 @@ pub struct State {
     cross_check: CrossCheckState,
     sign_check: SignCheckState,
     polarity: PolarityState,
-    hand_torque_nm: f32,
+    polarity_torque_nm: f32,
     engagement: EngagementState,
     track: PathTrackingState,
     limiter: LimiterState,
@@ -75,8 +75,8 @@ impl State {
     }
 
     /// Torque that the law would request during the polarity check, in the bicycle's sign \[N m\].
-    pub fn hand_torque_nm(&self) -> f32 {
-        self.hand_torque_nm
+    pub fn polarity_torque_nm(&self) -> f32 {
+        self.polarity_torque_nm
     }
 
     /// Slopes of gyro and motor from the sign check: 1 as expected, -1 reversed; `None` while the excitation is too
@@ -178,7 +178,7 @@ pub fn step(plan: &Plan, state: &mut State, frame: &SensorFrame) -> Command {
         let gain = plan.polarity_gain_nm_s_rad;
         polarity::step(&config.input, plan.period_s, &mut state.polarity, &measurements, gain);
         let roll_rate_rad_s = measurements.gyro_rad_s().map_or(0.0, |[x, ..]| x);
-        state.hand_torque_nm = gain * config.dead_band.excess(roll_rate_rad_s);
+        state.polarity_torque_nm = gain * config.dead_band.excess(roll_rate_rad_s);
         causes.note(Cause::PolarityWrong, state.polarity.next == PolarityStep::Wrong);
     }
     let engagement_input = engagement::EngagementInput {

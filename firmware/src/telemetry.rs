@@ -57,7 +57,7 @@ pub struct Telemetry {
     /// Step of the polarity check.
     pub polarity: PolarityStep,
     /// Torque shown by the polarity check \[N m\].
-    pub shown_nm: f32,
+    pub polarity_torque_nm: f32,
     /// Whether the motor accepted the command.
     pub drive: Result<(), DriveError>,
 }

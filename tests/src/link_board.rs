@@ -153,7 +153,7 @@ pub fn telemetry(steps: u32) -> Telemetry {
         command,
         slopes: [None, Some(0.5)],
         polarity: 3,
-        shown_nm: 0.0,
+        polarity_torque_nm: 0.0,
     }
 }
 

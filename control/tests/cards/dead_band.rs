@@ -123,6 +123,10 @@ fn the_polarity_check_shows_the_torque_behind_the_band() {
             };
             let _ = step(&plan, &mut state, &frame);
         }
-        assert!((state.hand_torque_nm() - expected_nm).abs() < 0.02, "{} N m", state.hand_torque_nm());
+        assert!(
+            (state.polarity_torque_nm() - expected_nm).abs() < 0.02,
+            "{} N m",
+            state.polarity_torque_nm()
+        );
     }
 }

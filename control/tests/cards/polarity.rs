@@ -73,8 +73,8 @@ fn run_check(plan: &Plan, frames: &[SensorFrame]) -> (Vec<PolarityStep>, Vec<Cau
         if state.polarity() != *requested.last().unwrap() {
             requested.push(state.polarity());
         }
-        if (1000..2000).contains(&i) && state.hand_torque_nm().abs() > shown.abs() {
-            shown = state.hand_torque_nm();
+        if (1000..2000).contains(&i) && state.polarity_torque_nm().abs() > shown.abs() {
+            shown = state.polarity_torque_nm();
         }
     }
     (requested, causes.iter().collect(), shown)

@@ -19,8 +19,8 @@ pub struct Telemetry {
     pub slopes: [Option<f32>; 2],
     /// Next step of the polarity check, as the number of [`control::sensors::polarity::PolarityStep`].
     pub polarity: u8,
-    /// Torque that the law would request during the check \[N m\]; [`control::State::hand_torque_nm`].
-    pub shown_nm: f32,
+    /// Torque that the law would request during the check \[N m\]; [`control::State::polarity_torque_nm`].
+    pub polarity_torque_nm: f32,
     /// The sensors of this step. Last, so that a new sensor extends the message at its end.
     pub frame: SensorFrame,
 }
@@ -34,7 +34,7 @@ impl Telemetry {
         to.put(&encode_command(&self.command));
         self.slopes.into_iter().for_each(|slope| to.scalar(slope));
         to.u8(self.polarity);
-        to.f32(self.shown_nm);
+        to.f32(self.polarity_torque_nm);
         to.put(&encode_frame(&self.frame));
     }
 
@@ -47,7 +47,7 @@ impl Telemetry {
             command: command(from)?,
             slopes: [from.scalar()?, from.scalar()?],
             polarity: from.u8()?,
-            shown_nm: from.f32()?,
+            polarity_torque_nm: from.f32()?,
             frame: frame(from)?,
         })
     }

@@ -40,7 +40,7 @@ pub async fn control(plan: &'static mut Plan) {
             slopes: state.slopes(),
             configuration,
             polarity: state.polarity(),
-            shown_nm: state.hand_torque_nm(),
+            polarity_torque_nm: state.polarity_torque_nm(),
             drive,
         };
         telemetry::set(telemetry);

@@ -156,6 +156,6 @@ fn message(latest: &Telemetry) -> link::telemetry::Telemetry {
         command: latest.command,
         slopes: latest.slopes,
         polarity: latest.polarity as u8,
-        shown_nm: latest.shown_nm,
+        polarity_torque_nm: latest.polarity_torque_nm,
     }
 }

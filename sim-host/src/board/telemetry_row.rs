@@ -86,7 +86,8 @@ pub struct TelemetryRow {
 impl TelemetryRow {
     /// The row of a control step at `t` on the board's clock \[s\].
     pub fn new(t: f64, received: &Telemetry) -> Self {
-        let Telemetry { steps, late, driven, frame, command, slopes, polarity, shown_nm } = received;
+        let Telemetry { steps, late, driven, frame, command, slopes, polarity, polarity_torque_nm } =
+            received;
         let ([roll_rate, pitch_rate, yaw_rate], gyro_age) = triple(&frame.gyro_rad_s);
         let ([x, y, z], accel_age) = triple(&frame.accel_m_s2);
         let (steer, steer_age) = sample(&frame.steer_rad);
@@ -130,7 +131,7 @@ impl TelemetryRow {
             gyro_slope,
             motor_slope,
             polarity: *polarity,
-            shown_torque: *shown_nm,
+            shown_torque: *polarity_torque_nm,
             causes_low: command.causes.0 as u32,
             causes_high: (command.causes.0 >> 32) as u32,
         }

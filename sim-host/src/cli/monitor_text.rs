@@ -125,7 +125,11 @@ pub(super) fn panel(monitor: &Monitor, damaged: u32) -> Vec<String> {
             format!("limits     {}", limits(command.limits).join(", ")),
         ]);
         if command.causes.has(Cause::PolarityUnchecked) || command.causes.has(Cause::PolarityWrong) {
-            lines.push(format!("check      {}; torque shown {:.2} N m", todo(step.polarity), step.shown_nm));
+            lines.push(format!(
+                "check      {}; torque shown {:.2} N m",
+                todo(step.polarity),
+                step.polarity_torque_nm
+            ));
         }
         lines.extend(cause_lines(command.causes));
     }

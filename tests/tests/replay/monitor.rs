@@ -35,7 +35,7 @@ fn the_monitors_table_is_replayed_as_it_is() {
             command,
             slopes: state.slopes(),
             polarity: 0,
-            shown_nm: 0.0,
+            polarity_torque_nm: 0.0,
         };
         bytes.extend(board.unsolicited(&Message::Telemetry(telemetry)));
     }

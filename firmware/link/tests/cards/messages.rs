@@ -60,13 +60,13 @@ proptest! {
         bits in prop::collection::vec(any::<u8>(), 81), command in commands(), slopes in slopes(), steps in any::<u32>()
     ) {
         let frame = decode_frame(&bits.try_into().expect("81 bytes"));
-        let sent = Telemetry { steps, late: 3, driven: true, frame, command, slopes, polarity: 2, shown_nm: 1.5 };
+        let sent = Telemetry { steps, late: 3, driven: true, frame, command, slopes, polarity: 2, polarity_torque_nm: 1.5 };
         through(&Message::Telemetry(sent), |got| {
             let Message::Telemetry(got) = got else { panic!("{got:?}") };
             assert_eq!(encode_frame(&got.frame), encode_frame(&frame));
             assert_eq!(encode_command(&got.command), encode_command(&command));
             assert_eq!((got.steps, got.late, got.driven, got.slopes), (steps, 3, true, slopes));
-            assert_eq!((got.polarity, got.shown_nm), (2, 1.5));
+            assert_eq!((got.polarity, got.polarity_torque_nm), (2, 1.5));
         });
         through(&Message::PilFrame(frame), |got| {
             let Message::PilFrame(got) = got else { panic!("{got:?}") };
@@ -151,7 +151,7 @@ pub(crate) fn all() -> Vec<Message<'static>> {
             command,
             slopes: [None, Some(0.5)],
             polarity: 1,
-            shown_nm: -2.0,
+            polarity_torque_nm: -2.0,
         }),
         Message::Fault(fault),
         Message::Log("steer sensor found; 7 \u{b5}s"),

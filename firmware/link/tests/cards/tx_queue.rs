@@ -23,7 +23,7 @@ fn telemetry(steps: u32) -> Telemetry {
         command,
         slopes: [None, Some(0.9)],
         polarity: 0,
-        shown_nm: 0.0,
+        polarity_torque_nm: 0.0,
     }
 }
 
