@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 use sim_host::rider::{KEYS, catalogue};
 use tests::cli::{Bench, repository, word};
+use tests::detection::rows_of;
 
 const PROGRAM: &str = env!("CARGO_BIN_EXE_sim-host-under-test");
 
@@ -294,6 +295,30 @@ fn list_show_and_check() {
     assert!(check.contains("gains best: not possible") && check.contains("gains mean: 2 points"), "{check}");
     bench.run("rider show my.toml --gains best").rejected_naming(&["my.toml", "best", "`vaf`"]);
     assert_eq!(bench.json("rider show my.toml")["fits"].as_array().unwrap().len(), 3);
+}
+
+/// Situation: the built-in riders. Action: check each. Must hold: the page has the number of speeds at which each of their fits is
+/// unstable, some none and some all.
+#[test]
+fn the_page_has_the_unstable_fits() {
+    let bench = Bench::new(PROGRAM);
+    let page = std::fs::read_to_string(repository("docs/riders.md")).expect("the page");
+    let row = |name| {
+        let check = bench.run(&format!("rider check {name}")).stdout;
+        let speeds = check.split_once("at the ").and_then(|(_, rest)| rest.split_once(" speeds"));
+        let (speeds, _) = speeds.unwrap_or_else(|| panic!("{name}: {check}"));
+        let unstable = |line: &str| match line.split_once("unstable at ") {
+            Some((_, rest)) => rest.split(' ').next().unwrap_or_default().to_owned(),
+            None => {
+                line.ends_with(", stable").then(|| "0".into()).unwrap_or_else(|| panic!("{name}: {line}"))
+            }
+        };
+        let fits: Vec<String> =
+            check.lines().filter(|line| line.starts_with("gains ")).map(unstable).collect();
+        format!("| `{name}` | {speeds} | {} |", fits.join(" | "))
+    };
+    let found: Vec<String> = catalogue::shipped_names().map(row).collect();
+    assert_eq!(rows_of(&page, "unstable-fits"), found);
 }
 
 /// Situation: a table in which one set has a covariance, and a copy at other speeds.
