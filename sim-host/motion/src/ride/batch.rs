@@ -12,7 +12,8 @@ pub fn side_by_side() -> usize {
 
 /// Simulates every ride to its end; results in the order of `starts`.
 ///
-/// As many in parallel as [`side_by_side`] states, without fused multiply-add. The bits are the same.
+/// As many in parallel as [`side_by_side`] states, few in fewer lanes that take less time, without fused multiply-add. The bits are the
+/// same.
 pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
     Instructions::of_this_processor().rides(conditions, starts)
 }

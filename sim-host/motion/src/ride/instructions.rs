@@ -7,8 +7,13 @@ use super::{Conditions, Ride, Start, TracePoint, lanes};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::num::{Lanes, Scalar};
 
-/// Most rides that are simulated one after the other: as many in lanes take as long as a full batch.
-const FEW: usize = 2;
+/// Most rides that are simulated in the lanes of one register: they take little longer than one.
+#[cfg(target_arch = "x86_64")]
+const SOME: usize = 4;
+
+/// Most rides that take less time in the lanes of AVX2 than in those of AVX-512.
+#[cfg(target_arch = "x86_64")]
+const HALF: usize = 8;
 
 /// The lanes of processors without the instructions below: NEON's registers hold two numbers.
 const ANY_LANES: usize = if cfg!(target_arch = "aarch64") { 4 } else { 1 };
@@ -94,11 +99,15 @@ impl Instructions {
 
     /// Every ride to its end, in the order of `starts`.
     pub(super) fn rides(self, conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-        if starts.len() <= FEW {
+        if starts.len() <= 1 {
             return self.in_turn(conditions, starts, None, &mut Backend::Local);
         }
         match self {
-            // SAFETY: the processor has these instructions, in all functions of this file.
+            // SAFETY: the processor has these instructions, in all functions of this file; with AVX-512 it has AVX2.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 | Self::Avx2 if starts.len() <= SOME => unsafe { some_by_avx2(conditions, starts) },
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 if starts.len() <= HALF => unsafe { avx2::rides(conditions, starts) },
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => unsafe { avx512::rides(conditions, starts) },
             #[cfg(target_arch = "x86_64")]
@@ -110,6 +119,8 @@ impl Instructions {
     /// Every quick ride, in the order of `starts`.
     pub(super) fn quick_rides(self, quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
         match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 if starts.len() <= HALF => unsafe { avx2::quick_rides(quick, starts) },
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 => unsafe { avx512::quick_rides(quick, starts) },
             #[cfg(target_arch = "x86_64")]
@@ -148,6 +159,12 @@ impl Instructions {
             Self::Any => in_turn(conditions, starts, trace, backend),
         }
     }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn some_by_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
+    lanes::run::<SOME>(conditions, starts, None, &mut Backend::Local)
 }
 
 /// Instructions with three operands need no copies of registers.
@@ -230,8 +247,12 @@ mod tests {
         assert!((5..=35).contains(&fell), "{fell} of {} rides fall", starts.len());
         for set in Instructions::available() {
             assert_eq!(set.rides(&conditions, &starts), one_by_one, "{set:?}");
-            assert_eq!(set.rides(&conditions, &starts[..FEW]), one_by_one[..FEW], "{set:?}");
             assert_eq!(set.quick_rides(&quick, &starts), quick_one_by_one, "{set:?}");
+            for few in [1, 2, 4, 5, 8, 9] {
+                assert_eq!(set.rides(&conditions, &starts[..few]), one_by_one[..few], "{set:?}, {few}");
+                let quick = set.quick_rides(&quick, &starts[..few]);
+                assert_eq!(quick, quick_one_by_one[..few], "{set:?}, {few}");
+            }
         }
     }
 }

@@ -76,7 +76,7 @@ impl SignalHistory {
     /// zero before the first one arrives.
     #[inline(always)]
     pub fn arriving(&self, t: f64, h: f64) -> [f64; 3] {
-        [0.0, 0.5, 1.0].map(|part| self.arriving_after(t, part * h))
+        [self.arriving_after(t, 0.0), self.arriving_after(t, 0.5 * h), self.arriving_after(t, h)]
     }
 
     /// The signal that arrives `elapsed_s` after the start `t` of a step.
