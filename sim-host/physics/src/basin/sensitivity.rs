@@ -1,14 +1,12 @@
 //! Sensitivity of the basin's height to each parameter of bicycle and rider, by central differences.
 
 use super::Column;
-use super::plain::narrow;
-use super::scan::Edge;
+use super::scan::{Edge, fell};
 use super::search::{Axis, Method, Search, SearchError, border};
 use crate::bicycle::{self, Geometry, Parameters};
-use crate::ride::{Conditions, Ride, rides};
+use crate::ride::{Conditions, Quick, QuickRide, Ride, Start, rides};
 use crate::rider::{KEYS, Rider, Schedule};
 use rayon::prelude::*;
-use std::convert::Infallible;
 
 /// A parameter of the bicycle or the rider.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -170,29 +168,139 @@ pub fn sensitivities(
     quantities.par_iter().map(one).collect()
 }
 
-/// The border nearest to `guess` \[rad/s\].
-///
-/// Eight rides around it, over an increasing width until the first does not fall and another does. The border
-/// is then narrowed as usual.
+/// The border nearest to `guess` \[rad/s\]: by quick rides, confirmed by exact ones on both sides; by exact ones alone where there are no
+/// quick ones, or these do not decide or are contradicted. The disturbances are the same, and so are the bits.
 fn near(conditions: &Conditions, speed: f64, guess: f64, tolerance: f64) -> f64 {
-    let mut ride = |rates: &[f64]| -> Result<Vec<Ride>, Infallible> {
-        let starts: Vec<_> = rates.iter().map(|&rate| Axis::SteerRate.start(speed, rate)).collect();
-        Ok(rides(conditions, &starts))
+    let starts = |rates: &[f64]| -> Vec<Start> {
+        rates.iter().map(|&rate| Axis::SteerRate.start(speed, rate)).collect()
     };
+    let exact =
+        |rates: &[f64]| -> Vec<bool> { rides(conditions, &starts(rates)).iter().map(Ride::fell).collect() };
+    let falls = |ride: &QuickRide| match ride.outcome {
+        None if ride.upright => Some(false),
+        outcome => outcome.map(fell),
+    };
+    let quick = Quick::new(conditions).map(|quick| quick.fine());
+    let quickly = quick.and_then(|quick| {
+        nearest(|rates| quick.rides(&starts(rates)).iter().map(falls).collect(), guess, tolerance)
+    });
+    let confirmed = quickly.and_then(|found| found.confirmed(exact));
+    let plainly = || nearest(|rates| Some(exact(rates)), guess, tolerance).map(|found| found.border());
+    confirmed.or_else(plainly).unwrap_or(f64::NAN)
+}
+
+/// Rides of a confirmation: as many as take little longer than one.
+const AT_ONCE: usize = 4;
+
+/// The last disturbances tried around a border \[rad/s\], with the place of the last that does not fall before the first that does.
+struct Nearest {
+    points: Vec<f64>,
+    safe: usize,
+}
+
+/// The border nearest to `guess` \[rad/s\], narrow to `tolerance`; `None` if `falls` does not decide which of some disturbances
+/// make the bicycle fall.
+///
+/// Eight rides around it, over an increasing width until the first does not fall and another does. The edge is then narrowed
+/// as usual. If all of the greatest width fall, the border is zero.
+fn nearest(
+    mut falls: impl FnMut(&[f64]) -> Option<Vec<bool>>,
+    guess: f64,
+    tolerance: f64,
+) -> Option<Nearest> {
     let mut width = 8e-3;
-    loop {
+    let (mut edge, mut found) = loop {
         let away = [-1.0, -0.25, -0.0625, -0.015, 0.015, 0.0625, 0.25, 1.0];
         let rates = away.map(|part| (guess + width * part).max(0.0));
-        let Ok(done) = ride(&rates);
-        let first = done.iter().position(Ride::fell);
+        let first = falls(&rates)?.iter().position(|fell| *fell);
         match first {
             Some(first) if first > 0 => {
                 let edge = Edge { safe: rates[first - 1], fell: rates[first] };
-                let Ok(border) = narrow(&mut ride, edge, None, tolerance, None);
-                return border.safe;
+                break (edge, Nearest { points: rates.to_vec(), safe: first - 1 });
             }
-            _ if width > guess.max(1.0) => return if first.is_none() { rates[7] } else { 0.0 },
+            _ if width > guess.max(1.0) => {
+                let safe = if first.is_none() { rates[7] } else { 0.0 };
+                return Some(Nearest { points: vec![safe], safe: 0 });
+            }
             _ => width *= 8.0,
+        }
+    };
+    while !edge.narrow(tolerance) {
+        let sections = edge.sections();
+        let first = falls(&sections)?.iter().position(|fell| *fell);
+        let points = [&[edge.safe], &sections[..], &[edge.fell]].concat();
+        found = Nearest { points, safe: first.unwrap_or(sections.len()) };
+        edge = Edge { safe: found.points[found.safe], fell: found.points[found.safe + 1] };
+    }
+    Some(found)
+}
+
+impl Nearest {
+    /// The largest disturbance that does not fall.
+    fn border(&self) -> f64 {
+        self.points[self.safe]
+    }
+
+    /// The same by rides at both sides of the border and, while these contradict it, farther away; `None` if it is not between two
+    /// of the points.
+    fn confirmed(&self, falls: impl Fn(&[f64]) -> Vec<bool>) -> Option<f64> {
+        let last = self.points.len().checked_sub(AT_ONCE)?;
+        let mut from = self.safe.saturating_sub(1).min(last);
+        loop {
+            let some = self.points.get(from..from + AT_ONCE)?;
+            // The next points contain one of these, so that the search does not return.
+            from = match falls(some).iter().position(|fell| *fell) {
+                Some(0) if from == 0 => return None,
+                None if from == last => return None,
+                Some(0) => from.saturating_sub(AT_ONCE - 1),
+                None => (from + AT_ONCE - 1).min(last),
+                Some(first) => return some.get(first - 1).copied(),
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bicycle::catalogue;
+    use crate::ride::Assist;
+    use crate::rider::{Fit, Outside};
+
+    /// Situation: the smart, old rider at 4.3 m/s, with and without a parameter changed. Action: the border near good and bad
+    /// guesses. Must hold: the bits are those of exact rides alone.
+    #[test]
+    fn quick_rides_find_the_border_of_exact_ones() {
+        let parameters = catalogue::load("rigid_jason").unwrap().parameters;
+        let table = crate::rider::catalogue::load("smart").unwrap();
+        let rider = table.rider(Fit::Mean, Outside::Extrapolate, None).unwrap();
+        let bicycle = Geometry::new(&parameters);
+        let usual = Conditions { rider: Some(rider), ..Conditions::thesis(bicycle, Assist::None) };
+        for (quantity, guess) in [(Quantity::Gain(2), 4.44), (Quantity::Bicycle(0), 4.2)] {
+            let conditions = quantity.scaled(&usual, &parameters, 1.01).unwrap();
+            let exact = |rates: &[f64]| {
+                let starts: Vec<Start> = rates.iter().map(|&rate| Axis::SteerRate.start(4.3, rate)).collect();
+                Some(rides(&conditions, &starts).iter().map(Ride::fell).collect())
+            };
+            let border = nearest(exact, guess, 3e-4).unwrap().border();
+            assert!((3.5..5.5).contains(&border), "{border}");
+            assert_eq!(near(&conditions, 4.3, guess, 3e-4), border, "{quantity:?}");
+        }
+    }
+
+    /// Situation: a border located at each of ten points, the true one between any two of them or outside. Action: confirm it.
+    /// Must hold: the last point before the true border, in at most a ride for each point and one more for each further batch;
+    /// nothing if it is outside.
+    #[test]
+    fn a_border_located_wrongly_is_found_beside() {
+        let points: Vec<f64> = (0..10).map(f64::from).collect();
+        for safe in 0..9 {
+            let located = Nearest { points: points.clone(), safe };
+            for border in 0..11 {
+                let falls = |some: &[f64]| some.iter().map(|x| *x > f64::from(border) - 0.5).collect();
+                let expected = (1..10).contains(&border).then(|| f64::from(border) - 1.0);
+                assert_eq!(located.confirmed(falls), expected, "at {safe}, in truth before {border}");
+            }
         }
     }
 }
