@@ -5,7 +5,7 @@ use super::published::{Cell, Printed};
 use super::study::Study;
 use crate::bicycle::ForcePoint;
 use crate::identify::{
-    Disturbances, Drift, From, GAINS, GrayBox, Hold, Measured, PerGain, Problem, Record, Signal,
+    Disturbances, Drift, GAINS, GrayBox, Hold, Measured, PerGain, Problem, Record, Signal,
 };
 use crate::perturbation::Experiment;
 use crate::rider::catalogue::load;
@@ -80,7 +80,7 @@ impl<'a> Run<'a> {
         let problem = Problem { record, model: self.model, drift: Drift::None, skip_s: 0.0, seed: 0 };
         let gains = gains(row);
         let active: Vec<usize> = (0..GAINS).filter(|i| gains[*i] != 0.0).collect();
-        Some(problem.fit(&active, From::Gains(&gains), &|| false).ok()?.mean_vaf())
+        problem.mean_vaf_from(&active, &gains).ok()
     }
 
     fn value(&self, row: &Row, cell: Cell) -> Value {

@@ -1,6 +1,6 @@
 //! Fit of the gains to a record.
 
-use super::descent::descend;
+use super::descent::{ENOUGH, ENOUGH_FOR_COST, descend_until};
 use super::error::{FitError, SAMPLES_PER_GAIN, SHORTEST_S};
 use super::gray_box::{GAINS, GrayBox, PerGain, symbols};
 use super::objective::{Chosen, Drift, Objective};
@@ -231,22 +231,21 @@ impl Problem {
         Ok(())
     }
 
-    /// Fits the gains `active` by indices in [`symbols`]; `stop` interrupts.
-    ///
-    /// # Errors
-    /// The record can't be fitted, or no bounded response was found.
-    pub fn fit(
+    /// The optima of the gains `active`, best first, with their objective; the search from known gains ends at a relative decrease of
+    /// the cost of `enough`.
+    fn ends(
         &self,
         active: &[usize],
         from: From,
+        enough: f64,
         stop: &(impl Fn() -> bool + Sync),
-    ) -> Result<Fit, FitError> {
+    ) -> Result<(Objective<'_>, Vec<Optimum>), FitError> {
         self.check(active)?;
         let chosen = |k: usize| self.fitted(k);
         let mut objective = Objective::new(&self.record, &self.model, self.drift, &chosen);
         let mut ends = match from {
             From::Gains(gains) => {
-                let found = descend(&objective, active, gains).ok_or(FitError::Unbounded)?;
+                let found = descend_until(enough, &objective, active, gains).ok_or(FitError::Unbounded)?;
                 vec![Optimum { found, starts: 1 }]
             }
             From::Everywhere => {
@@ -263,8 +262,35 @@ impl Problem {
             let at = objective.evaluate(&best.found.gains, &[]).ok_or(FitError::Unbounded)?;
             let means = objective.mean_squares(&at);
             objective = objective.weighted(means.into_iter());
-            best.found = descend(&objective, active, &best.found.gains).ok_or(FitError::Unbounded)?;
+            best.found =
+                descend_until(enough, &objective, active, &best.found.gains).ok_or(FitError::Unbounded)?;
         }
+        Ok((objective, ends))
+    }
+
+    /// [`Fit::mean_vaf`] of the gains `active` fitted from known ones, without the rest of a [`Fit`], which takes longer.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub fn mean_vaf_from(&self, active: &[usize], gains: &PerGain) -> Result<f64, FitError> {
+        let (objective, ends) = self.ends(active, From::Gains(gains), ENOUGH_FOR_COST, &|| false)?;
+        let best = ends.first().ok_or(FitError::Unbounded)?;
+        let vafs = objective.vaf(&best.found.gains, &|_| true).ok_or(FitError::Unbounded)?;
+        Ok(vafs.iter().sum::<f64>() / vafs.len() as f64)
+    }
+
+    /// Fits the gains `active` by indices in [`symbols`]; `stop` interrupts.
+    ///
+    /// # Errors
+    /// The record can't be fitted, or no bounded response was found.
+    pub fn fit(
+        &self,
+        active: &[usize],
+        from: From,
+        stop: &(impl Fn() -> bool + Sync),
+    ) -> Result<Fit, FitError> {
+        let (objective, ends) = self.ends(active, from, ENOUGH, stop)?;
+        let best = ends.first().ok_or(FitError::Unbounded)?;
         let gains = best.found.gains;
         let at = objective.evaluate(&gains, active).ok_or(FitError::Unbounded)?;
         let Uncertainty { covariance, independent, condition } =
@@ -318,4 +344,81 @@ impl Problem {
 /// The symbols of some gains, as a list.
 pub(super) fn names(active: &[usize]) -> String {
     active.iter().map(|i| symbols()[*i]).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identify::{Disturbances, Hold, Measured};
+    use physics::bicycle::ForcePoint;
+    use physics::bicycle::linear::Linear;
+    use physics::perturbation::Experiment;
+    use physics::rider::Neuromuscular;
+
+    /// 20 s of pushes with all signals, of the response to the published gains of the first run of a table with other delays; and these
+    /// gains.
+    fn problem(table: &str, delay_s: f64, hold: Hold) -> (Problem, PerGain) {
+        let row = physics::rider::catalogue::load(table).unwrap().rows.remove(0);
+        let (gains, speed_m_s) = (std::array::from_fn(|i| row.gains.0[i]), row.speed_m_s);
+        let parameters = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters;
+        let bicycle = Linear::new(&parameters);
+        let force_input = bicycle.lateral_force_input(ForcePoint::SADDLE).into();
+        let neuromuscular = Neuromuscular::SHOULDERS;
+        let model = GrayBox { bicycle, force_input, neuromuscular, speed_m_s, delay_s };
+        let experiment = Experiment { duration_s: 20.0, ..Experiment::at(speed_m_s) };
+        let samples: Vec<[f64; 2]> =
+            experiment.lateral_force().into_iter().map(|force| [force, 0.02 * force]).collect();
+        let disturbances = Disturbances { sample_s: experiment.sample_s(), samples, hold };
+        let response = model.response(&disturbances, &gains).unwrap();
+        let measured = Signal::ALL.map(|signal| {
+            let values = response.iter().map(|x| x[signal.state()]).collect();
+            Measured { signal, values, valid: vec![true; response.len()] }
+        });
+        let record = Record { disturbances, measured: measured.to_vec() };
+        (Problem { record, model, drift: Drift::None, skip_s: 0.0, seed: 0 }, gains)
+    }
+
+    /// Situation: riders without delay, with one of whole samples and one between, constant and straight disturbances. Action: the
+    /// Jacobian of all signals. Must hold: it equals central differences with respect to every gain.
+    #[test]
+    fn derivatives_by_every_gain_are_those_of_differences() {
+        let young = "young-reduction";
+        let riders = [
+            ("undelayed-reduction", 0.0, Hold::Zero),
+            (young, 0.03, Hold::Zero),
+            (young, 0.0317, Hold::Linear),
+        ];
+        for (table, delay_s, hold) in riders {
+            let (problem, gains) = problem(table, delay_s, hold);
+            let objective = Objective::new(&problem.record, &problem.model, Drift::None, &|_| true);
+            let all: Vec<usize> = (0..GAINS).collect();
+            let jacobian = objective.evaluate(&gains, &all).unwrap().jacobian;
+            for gain in all {
+                let step = 1e-6 * TYPICAL[gain];
+                let at = |sign: f64| {
+                    let mut changed = gains;
+                    changed[gain] += sign * step;
+                    objective.evaluate(&changed, &[]).unwrap().residual
+                };
+                let differences = (at(-1.0) - at(1.0)) / (2.0 * step);
+                let error = (&differences - jacobian.column(gain)).norm() / differences.norm();
+                assert!(error < 1e-5, "delay {delay_s} s, {}: {error:e}", symbols()[gain]);
+            }
+        }
+    }
+
+    /// Situation: the response to all gains, fitted by those of the run's next set, so that some remains. Action: the fit, and its
+    /// variance accounted for alone. Must hold: both are the same to 1e-6.
+    #[test]
+    fn the_variance_accounted_for_is_that_of_the_fit() {
+        let (problem, gains) = problem("young-reduction", 0.03, Hold::Zero);
+        let row = physics::rider::catalogue::load("young-reduction").unwrap().rows.remove(1);
+        let start: PerGain = std::array::from_fn(|i| row.gains.0[i]);
+        let active: Vec<usize> = (0..GAINS).filter(|i| start[*i] != 0.0).collect();
+        assert!(active.len() < gains.iter().filter(|gain| **gain != 0.0).count());
+        let fit = problem.fit(&active, From::Gains(&start), &|| false).unwrap();
+        let alone = problem.mean_vaf_from(&active, &start).unwrap();
+        assert!((alone - fit.mean_vaf()).abs() < 1e-6, "{alone} {}", fit.mean_vaf());
+        assert!(alone < 1.0 - 1e-6, "{alone}");
+    }
 }

@@ -3,7 +3,7 @@
 
 use super::gray_box::{GAINS, GrayBox, INPUTS, OpenLoop, STATES};
 use crate::exponential::exponential_of;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::SMatrix;
 
 /// Points of an interval at which the neural signal is stored: Chebyshev-Lobatto points, both ends included, so that
 /// the jumps of the signal where the force jumps lie between two intervals.
@@ -17,7 +17,6 @@ const DISTURBANCES: usize = STATES + 2 * NODES;
 /// State, and the derivatives of polynomial inputs.
 const AUGMENTED: usize = STATES + NODES + 2 * INPUTS;
 
-pub(super) type OfSources = SVector<f64, SOURCES>;
 type StateOfSources = SMatrix<f64, STATES, SOURCES>;
 
 /// The interval's end and the signals at its nodes as linear functions of [`SOURCES`].

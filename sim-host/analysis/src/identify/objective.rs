@@ -2,7 +2,7 @@
 
 use super::gray_box::{GrayBox, PerGain};
 use super::record::Record;
-use super::response::{Discrete, Signal};
+use super::response::{Discrete, Signal, State, by_gain};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -41,6 +41,8 @@ impl Drift {
 /// One measured signal of the problem.
 struct Output {
     signal: Signal,
+    /// Its derivatives with respect to the gains of an angle.
+    by_gain: [State; 4],
     /// The samples in use.
     samples: Vec<usize>,
     /// Their values.
@@ -85,6 +87,7 @@ impl<'a> Objective<'a> {
             let basis = whole.select_rows(&samples);
             let mut output = Output {
                 signal: measured.signal,
+                by_gain: by_gain(model, measured.signal),
                 values: DVector::from_iterator(samples.len(), samples.iter().map(|k| measured.values[*k])),
                 drift: basis.qr().q(),
                 weight: 1.0,
@@ -163,9 +166,10 @@ impl<'a> Objective<'a> {
         let mut columns = DMatrix::zeros(self.size(), active.len());
         let mut first = 0;
         for output in &self.outputs {
-            let (state, count) = (output.signal.state(), output.values.len());
+            let count = output.values.len();
             for (column, gain) in active.iter().enumerate() {
-                let of = output.samples.iter().map(|k| response.tangents[*k][state][*gain]);
+                let (angle, of_state) = (gain / 4, &output.by_gain[gain % 4]);
+                let of = output.samples.iter().map(|k| dot(of_state, &response.tangents[*k][angle]));
                 let of = output.without_drift(DVector::from_iterator(count, of)) * output.weight;
                 columns.view_mut((first, column), (count, 1)).copy_from(&of);
             }
@@ -196,6 +200,10 @@ impl<'a> Objective<'a> {
         };
         self.outputs.iter().map(of).collect()
     }
+}
+
+fn dot(a: &State, b: &State) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl Output {

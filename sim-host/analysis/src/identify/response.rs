@@ -1,9 +1,9 @@
 //! Response of the gray box to recorded disturbances, with its exact derivatives with respect to the gains.
 
-use super::gray_box::{GAINS, GrayBox, INPUTS, PerGain, STATES};
-use super::interval::{Interval, NODES, OfSources, SOURCES};
+use super::gray_box::{GAINS, GrayBox, INPUTS, OpenLoop, PerGain, STATES};
+use super::interval::{Interval, NODES, SOURCES};
 use crate::exponential::exponential_of;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{RowSVector, SMatrix, SVector};
 
 /// Measured quantities that a model can be fitted to.
 #[derive(
@@ -90,16 +90,37 @@ impl Disturbances {
     }
 }
 
-/// The derivatives of each state with respect to each gain.
-type Tangents = [PerGain; STATES];
+/// The states of the loop.
+pub(super) type State = [f64; STATES];
+
+/// Angles whose gains are the drivers of [`Response::tangents`]: roll and steer.
+const ANGLES: usize = 2;
 
 /// States at the samples, from rest.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Response {
     /// Roll, steer and roll rate at each sample.
     pub(super) states: Vec<[f64; 3]>,
-    /// Their derivatives with respect to each gain; empty if not requested.
-    pub(super) tangents: Vec<[PerGain; 3]>,
+    /// The derivatives of the state with respect to the gains on the roll angle and on the steer angle, of which [`by_gain`]
+    /// makes those with respect to all gains; empty if not requested.
+    pub(super) tangents: Vec<[State; ANGLES]>,
+}
+
+/// Derivatives of `signal` with respect to the gains p, i, d and dd on an angle, each as a linear function of the state's
+/// derivative with respect to p: the loop is linear, begins at rest and does not change over time, so that driven by the
+/// angle's integral, rate or acceleration it moves by the integral, rate or acceleration of its motion when driven by the angle.
+pub(super) fn by_gain(model: &GrayBox, signal: Signal) -> [State; 4] {
+    let system = model.open_loop();
+    let (angle, order) = match signal {
+        Signal::Roll => (0, 1),
+        Signal::Steer => (1, 1),
+        Signal::RollRate => (0, 2),
+    };
+    let unit = |state: usize| RowSVector::<f64, STATES>::from_fn(|_, j| f64::from(u8::from(j == state)));
+    let acceleration: RowSVector<f64, STATES> = system.a.row(2 + angle).into();
+    // The neural signal is part of the torque's second derivative only, and none of the jerk.
+    let courses = [unit(4 + angle), unit(angle), unit(2 + angle), acceleration, acceleration * system.a];
+    [order, order - 1, order + 1, order + 2].map(|order| courses[order].transpose().into())
 }
 
 /// Roll or steer angle at which a linear response counts as unbounded \[rad\]: no recorded ride comes near.
@@ -114,9 +135,9 @@ impl Response {
     }
 
     /// Stores the state at a sample; false if the motion is no longer bounded.
-    fn store(&mut self, x: &SVector<f64, STATES>, tangents: Option<&Tangents>) -> bool {
+    fn store(&mut self, x: &State, tangents: Option<&[State; ANGLES]>) -> bool {
         self.states.push([x[0], x[1], x[2]]);
-        self.tangents.extend(tangents.map(|t| [t[0], t[1], t[2]]));
+        self.tangents.extend(tangents);
         x[0].abs() < UNBOUNDED_RAD && x[1].abs() < UNBOUNDED_RAD
     }
 }
@@ -177,6 +198,66 @@ impl GrayBox {
     }
 }
 
+/// Sources of an interval without the disturbances.
+const MOTION: usize = STATES + 2 * NODES;
+/// State and neural signal at the nodes at the end of an interval, and zeros that make whole vectors.
+const MOVED: usize = STATES + NODES + 1;
+/// Nodes between the ends of an interval.
+const BETWEEN: usize = NODES - 2;
+
+/// A matrix by those of its columns that are not zero, each with its number.
+struct Columns<const R: usize>(Vec<(usize, [f64; R])>);
+
+impl<const R: usize> Columns<R> {
+    /// The first `count` columns of a matrix with these elements by row and column; zero in the rows that are beyond it.
+    fn new(count: usize, element: impl Fn(usize, usize) -> f64) -> Self {
+        let all = (0..count).map(|j| (j, std::array::from_fn(|i| element(i, j))));
+        Self(all.filter(|(_, column): &(usize, [f64; R])| column.iter().any(|x| *x != 0.0)).collect())
+    }
+
+    /// Product with a vector, of which many entries are zero: there are disturbances now and then.
+    #[inline]
+    fn times(&self, vector: &[f64]) -> [f64; R] {
+        let mut sum = [0.0; R];
+        for (j, column) in &self.0 {
+            let factor = vector[*j];
+            if factor == 0.0 {
+                continue;
+            }
+            sum.iter_mut().zip(column).for_each(|(sum, x)| *sum += x * factor);
+        }
+        sum
+    }
+}
+
+/// A motion in the delayed loop, of the state or of its derivative.
+struct Course {
+    x: State,
+    /// The neural signal at the nodes of each past interval.
+    past: Vec<[f64; NODES]>,
+}
+
+impl Course {
+    fn at_rest(interval: &Interval) -> Self {
+        Self { x: [0.0; STATES], past: vec![[0.0; NODES]; interval.lag + 1] }
+    }
+
+    /// What the interval depends on beside the disturbances: the state and the signal of two past intervals.
+    #[inline]
+    fn fill(&self, sources: &mut [f64; SOURCES], older: usize, newer: usize) {
+        sources[..STATES].copy_from_slice(&self.x);
+        sources[STATES..STATES + NODES].copy_from_slice(&self.past[older]);
+        sources[STATES + NODES..MOTION].copy_from_slice(&self.past[newer]);
+    }
+
+    /// Takes the end of an interval, and its neural signal less `driven` in place of the oldest.
+    #[inline]
+    fn moved(&mut self, end: &[f64; MOVED], older: usize, driven: [f64; NODES]) {
+        self.x.copy_from_slice(&end[..STATES]);
+        self.past[older] = std::array::from_fn(|i| end[STATES + i] + driven[i]);
+    }
+}
+
 fn delayed(
     interval: &Interval,
     parts: usize,
@@ -184,79 +265,89 @@ fn delayed(
     gains: &PerGain,
     tangents: bool,
 ) -> Option<Response> {
-    let gains = SVector::<f64, GAINS>::from_column_slice(gains);
-    let neural = SMatrix::<f64, NODES, SOURCES>::from_rows(&std::array::from_fn::<_, NODES, _>(|i| {
-        gains.transpose() * interval.signals[i]
-    }));
-    // The tangents are not disturbed.
-    let of_motion = |m: &SMatrix<f64, STATES, SOURCES>| m.fixed_columns::<MOTION>(0).into_owned();
-    let tangent_end = of_motion(&interval.end);
-    let tangent_neural = neural.fixed_columns::<MOTION>(0).into_owned();
+    let gains = SVector::<f64, GAINS>::from_column_slice(gains).transpose();
+    let neural = interval.signals.map(|signals| gains * signals);
+    let end = |i: usize, j: usize| match i.checked_sub(STATES) {
+        None => interval.end[(i, j)],
+        Some(node) => neural.get(node).map_or(0.0, |of_sources| of_sources[j]),
+    };
+    let (disturbed, free) = (Columns::<MOVED>::new(SOURCES, end), Columns::<MOVED>::new(MOTION, end));
+    // Roll and steer at the nodes between the ends: the signals of the gains that drive the tangents.
+    let angles = Columns::<{ ANGLES * BETWEEN }>::new(SOURCES, |i, j| {
+        interval.signals[1 + i % BETWEEN][(GAINS / ANGLES * (i / BETWEEN), j)]
+    });
     let samples = disturbances.samples.len();
     let mut response = Response::with_room(samples, tangents);
-    let mut x = SVector::<f64, STATES>::zeros();
-    let mut dx: Tangents = [[0.0; GAINS]; STATES];
-    // The neural signal at the nodes of each past interval, and its derivatives.
-    let mut past = vec![SVector::<f64, NODES>::zeros(); interval.lag + 1];
-    let mut past_tangents = vec![[[0.0; GAINS]; NODES]; interval.lag + 1];
-    let mut newest = 0;
+    let mut motion = Course::at_rest(interval);
+    let mut derived: [Course; ANGLES] = std::array::from_fn(|_| Course::at_rest(interval));
+    let (mut newest, mut sources) = (0, [0.0; SOURCES]);
     for k in 0..samples {
-        if !response.store(&x, tangents.then_some(&dx)) {
+        let stored = tangents.then(|| derived.each_ref().map(|course| course.x));
+        if !response.store(&motion.x, stored.as_ref()) {
             return None;
         }
         for part in 0..parts {
             // Of `lag + 1` entries the oldest is the one after the newest.
-            let older = (newest + 1) % past.len();
-            let newer = (newest + 2) % past.len();
-            let mut sources = OfSources::zeros();
-            sources.fixed_rows_mut::<STATES>(0).copy_from(&x);
-            sources.fixed_rows_mut::<NODES>(STATES).copy_from(&past[older]);
-            sources.fixed_rows_mut::<NODES>(STATES + NODES).copy_from(&past[newer]);
+            let older = (newest + 1) % motion.past.len();
+            let newer = (newest + 2) % motion.past.len();
+            motion.fill(&mut sources, older, newer);
             for (i, [start, end]) in disturbances.over(k, part, parts).into_iter().enumerate() {
                 (sources[MOTION + 2 * i], sources[MOTION + 2 * i + 1]) = (start, end);
             }
+            let before = motion.x;
+            motion.moved(&disturbed.times(&sources), older, [0.0; NODES]);
             if tangents {
-                let mut motion = [[0.0; GAINS]; MOTION];
-                motion[..STATES].copy_from_slice(&dx);
-                motion[STATES..STATES + NODES].copy_from_slice(&past_tangents[older]);
-                motion[STATES + NODES..].copy_from_slice(&past_tangents[newer]);
-                dx = times(&tangent_end, &motion);
-                let mut signal = times(&tangent_neural, &motion);
-                for (signal, of_sources) in signal.iter_mut().zip(&interval.signals) {
-                    let fed_back = of_sources * sources;
-                    signal.iter_mut().zip(fed_back.iter()).for_each(|(sum, x)| *sum += x);
+                let between = angles.times(&sources);
+                for (angle, derived) in derived.iter_mut().enumerate() {
+                    let driven = std::array::from_fn(|node| match node {
+                        0 => before[angle],
+                        node if node <= BETWEEN => between[angle * BETWEEN + node - 1],
+                        _ => motion.x[angle],
+                    });
+                    derived.fill(&mut sources, older, newer);
+                    derived.moved(&free.times(&sources), older, driven);
                 }
-                past_tangents[older] = signal;
             }
-            x = interval.end * sources;
-            past[older] = neural * sources;
             newest = older;
         }
     }
     Some(response)
 }
 
-/// Product of a matrix and derivatives: all gains side by side, which the compiler makes vector instructions.
-fn times<const R: usize, const K: usize>(
-    matrix: &SMatrix<f64, R, K>,
-    derivatives: &[PerGain; K],
-) -> [PerGain; R] {
-    std::array::from_fn(|row| {
-        let mut sum = [0.0; GAINS];
-        for (column, derivative) in derivatives.iter().enumerate() {
-            let factor = matrix[(row, column)];
-            sum.iter_mut().zip(derivative).for_each(|(sum, x)| *sum += factor * x);
-        }
-        sum
-    })
+/// Value and slope of each disturbance.
+const FORCES: usize = 2 * INPUTS;
+/// State and disturbances.
+const FORCED: usize = STATES + FORCES;
+/// The derivatives of the state, the state and the disturbances.
+const ALL: usize = ANGLES * STATES + FORCED;
+
+/// The loop closed by `gains` without delay: the rates of [`FORCED`].
+fn closed(system: &OpenLoop, gains: &PerGain) -> SMatrix<f64, FORCED, FORCED> {
+    let row = SVector::<f64, GAINS>::from_column_slice(gains).transpose();
+    let input = system.input + system.alpha * (row * system.d);
+    let mut rates = SMatrix::<f64, FORCED, FORCED>::zeros();
+    rates.fixed_view_mut::<STATES, STATES>(0, 0).copy_from(&(system.a + system.alpha * (row * system.c)));
+    for i in 0..INPUTS {
+        let place = STATES + 2 * i;
+        rates.fixed_view_mut::<STATES, 1>(0, place).copy_from(&input.column(i));
+        rates[(place, place + 1)] = 1.0;
+    }
+    rates
 }
 
-/// Sources of an interval without the disturbances.
-const MOTION: usize = STATES + 2 * NODES;
-/// State, and value and slope of each disturbance.
-const FORCED: usize = STATES + 2 * INPUTS;
-/// The same with one gain's derivative of the state.
-const BOTH: usize = 2 * STATES + 2 * INPUTS;
+/// With the derivatives of the state before it: each is driven by the angle of its gain.
+fn with_tangents(system: &OpenLoop, closed: &SMatrix<f64, FORCED, FORCED>) -> SMatrix<f64, ALL, ALL> {
+    let mut rates = SMatrix::<f64, ALL, ALL>::zeros();
+    let state = ANGLES * STATES;
+    rates.fixed_view_mut::<FORCED, FORCED>(state, state).copy_from(closed);
+    for angle in 0..ANGLES {
+        let place = angle * STATES;
+        let own = closed.fixed_view::<STATES, STATES>(0, 0);
+        rates.fixed_view_mut::<STATES, STATES>(place, place).copy_from(&own);
+        rates.fixed_view_mut::<STATES, 1>(place, state + angle).copy_from(&system.alpha);
+    }
+    rates
+}
 
 fn undelayed(
     model: &GrayBox,
@@ -266,58 +357,37 @@ fn undelayed(
     tangents: bool,
 ) -> Option<Response> {
     let system = model.open_loop();
-    let row = SVector::<f64, GAINS>::from_column_slice(gains).transpose();
-    let closed = system.a + system.alpha * (row * system.c);
-    let input = system.input + system.alpha * (row * system.d);
-    // One gain's derivative is driven by the signal of that gain.
-    let step = |gain: usize| {
-        let mut generator = SMatrix::<f64, BOTH, BOTH>::zeros();
-        generator.fixed_view_mut::<STATES, STATES>(0, 0).copy_from(&closed);
-        generator.fixed_view_mut::<STATES, STATES>(STATES, STATES).copy_from(&closed);
-        let driven = system.alpha * system.c.row(gain);
-        generator.fixed_view_mut::<STATES, STATES>(STATES, 0).copy_from(&driven);
-        for i in 0..INPUTS {
-            let place = 2 * STATES + 2 * i;
-            let direct = system.alpha * system.d[(gain, i)];
-            generator.fixed_view_mut::<STATES, 1>(0, place).copy_from(&input.column(i));
-            generator.fixed_view_mut::<STATES, 1>(STATES, place).copy_from(&direct);
-            generator[(place, place + 1)] = 1.0;
-        }
-        exponential_of(&(generator * sample_s))
-    };
-    let steps: Vec<_> = (0..if tangents { GAINS } else { 1 }).map(step).collect();
-    let forced = |of: &SMatrix<f64, BOTH, BOTH>, first: usize| {
-        let mut map = SMatrix::<f64, STATES, FORCED>::zeros();
-        map.fixed_columns_mut::<STATES>(0).copy_from(&of.fixed_view::<STATES, STATES>(first, 0));
-        let inputs = of.fixed_view::<STATES, { 2 * INPUTS }>(first, 2 * STATES);
-        map.fixed_columns_mut::<{ 2 * INPUTS }>(STATES).copy_from(&inputs);
-        map
-    };
-    let end = forced(&steps[0], 0);
-    let free = end.fixed_columns::<STATES>(0).into_owned();
-    let driven: Vec<_> = steps.iter().map(|step| forced(step, STATES)).collect();
+    let closed = closed(&system, gains);
+    let end = exponential_of(&(closed * sample_s));
+    let end = Columns::<STATES>::new(FORCED, |i, j| end[(i, j)]);
+    // Every angle's columns of its own derivative of the state, then those of the state and the disturbances.
+    let driven = tangents.then(|| {
+        let all = exponential_of(&(with_tangents(&system, &closed) * sample_s));
+        std::array::from_fn::<_, ANGLES, _>(|angle| {
+            Columns::<STATES>::new(STATES + FORCED, |i, j| {
+                let first = if j < STATES { angle } else { ANGLES - 1 };
+                all[(angle * STATES + i, first * STATES + j)]
+            })
+        })
+    });
     let samples = disturbances.samples.len();
     let mut response = Response::with_room(samples, tangents);
-    let mut x = SVector::<f64, STATES>::zeros();
-    let mut dx: Tangents = [[0.0; GAINS]; STATES];
+    let (mut x, mut dx) = ([0.0; STATES], [[0.0; STATES]; ANGLES]);
     for k in 0..samples {
         if !response.store(&x, tangents.then_some(&dx)) {
             return None;
         }
-        let mut sources = SVector::<f64, FORCED>::zeros();
-        sources.fixed_rows_mut::<STATES>(0).copy_from(&x);
+        let mut sources = [0.0; STATES + FORCED];
+        sources[STATES..2 * STATES].copy_from_slice(&x);
         for (i, [start, end]) in disturbances.over(k, 0, 1).into_iter().enumerate() {
-            sources[STATES + 2 * i] = start;
-            sources[STATES + 2 * i + 1] = (end - start) / sample_s;
+            sources[2 * STATES + 2 * i] = start;
+            sources[2 * STATES + 2 * i + 1] = (end - start) / sample_s;
         }
-        if tangents {
-            dx = times(&free, &dx);
-            for (gain, map) in driven.iter().enumerate() {
-                let by_signal = map * sources;
-                dx.iter_mut().zip(by_signal.iter()).for_each(|(of_state, x)| of_state[gain] += x);
-            }
+        for (dx, driven) in dx.iter_mut().zip(driven.iter().flatten()) {
+            sources[..STATES].copy_from_slice(dx);
+            *dx = driven.times(&sources);
         }
-        x = end * sources;
+        x = end.times(&sources[STATES..]);
     }
     Some(response)
 }
