@@ -44,12 +44,11 @@ pub mod report;
 pub mod rider_record;
 pub mod scenario;
 pub mod sensor_fit;
-pub mod simplex;
 pub mod study;
 pub mod sweep;
 pub mod thesis;
 pub mod weave;
 
-pub use analysis::{eigen, exponential, identify, tracking};
+pub use analysis::{damped, eigen, exponential, identify, matrix_pencil, simplex, tracking};
 use physics::json;
 pub use physics::{basin, bicycle, input_file, integrate, num, perturbation, plant, range, ride, rider};

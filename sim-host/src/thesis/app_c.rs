@@ -1,12 +1,12 @@
 //! Appendix C: eigenvalues estimated from nonlinear responses, by the thesis's methods and by the matrix pencil.
 
 use super::case::Assisted;
-use super::damped::{Bounds, Fitted, bounded, decay, oscillation};
 use super::draw::{SPEED, eigen_lines, same_name, speeds};
 use super::item::{Figure, Item, Table};
-use super::matrix_pencil;
 use super::study::Study;
+use crate::damped::{Bounds, Fitted, bounded, decay, oscillation};
 use crate::eigen::eigenvalues;
+use crate::matrix_pencil;
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::ride::{Assist, Conditions, Start, TracePoint, traced};
 use control::Law;
@@ -31,19 +31,28 @@ fn fitted_speeds(study: &Study) -> Vec<f64> {
     speeds(10.0, if study.quick { 20 } else { 100 })
 }
 
-/// The response of the uncontrolled bicycle; if it falls, without its last eighth.
-fn response(study: &Study, speed: f64, disturbance: f64) -> Vec<TracePoint> {
-    let conditions = Conditions::thesis(study.bicycle, Assist::None);
+/// The response of the uncontrolled bicycle over at most `time_limit_s`, every `every`th point; if it falls, without its last eighth.
+fn response(
+    study: &Study,
+    time_limit_s: f64,
+    (speed, disturbance): (f64, f64),
+    every: usize,
+) -> Vec<TracePoint> {
+    let conditions = Conditions { time_limit_s, ..conditions(study) };
     let start = Start { speed_m_s: speed, steer_rate_rad_s: disturbance, roll_rate_rad_s: 0.0 };
     let (ride, mut trace) = traced(&conditions, start);
     if ride.fell() {
         trace.truncate(trace.len() * 7 / 8);
     }
-    trace
+    trace.into_iter().step_by(every).collect()
+}
+
+fn conditions(study: &Study) -> Conditions {
+    Conditions::thesis(study.bicycle, Assist::None)
 }
 
 fn samples(trace: &[TracePoint], from_s: f64, of: fn(&TracePoint) -> f64) -> Vec<(f64, f64)> {
-    let selected = trace.iter().step_by(EVERY).filter(|p| p.t >= from_s);
+    let selected = trace.iter().filter(|p| p.t >= from_s);
     selected.map(|p| (p.t - from_s, of(p))).collect()
 }
 
@@ -64,7 +73,9 @@ pub fn figure_c_2(study: &Study) -> Item {
 
 /// A fit at every speed.
 fn each(study: &Study, fit: impl Fn(&[TracePoint], f64) -> Fitted + Sync) -> Vec<(f64, Fitted)> {
-    let at = |v: f64| (v, fit(&response(study, v, DISTURBANCE), v));
+    let whole_s = conditions(study).time_limit_s;
+    let response = |v: f64| study.responses.get(v, || response(study, whole_s, (v, DISTURBANCE), EVERY));
+    let at = |v: f64| (v, fit(&response(v), v));
     fitted_speeds(study).into_par_iter().map(at).collect()
 }
 
@@ -180,8 +191,10 @@ pub fn figure_c_3(study: &Study) -> Item {
 pub fn pencil_at(study: &Study, speed: f64, disturbance: f64) -> Option<[Complex<f64>; 4]> {
     const DT: usize = 20;
     const SAMPLES: usize = 61;
-    let trace = response(study, speed, disturbance);
-    let signal = |of: fn(&TracePoint) -> f64| trace.iter().step_by(DT).take(SAMPLES).map(of).collect();
+    // A ride so long that a fall does not shorten the samples if a longer one's would not.
+    let needed_s = conditions(study).step_s * (DT * SAMPLES) as f64 * 8.0 / 7.0;
+    let trace = response(study, needed_s, (speed, disturbance), DT);
+    let signal = |of: fn(&TracePoint) -> f64| trace.iter().take(SAMPLES).map(of).collect();
     let signals: [Vec<f64>; 4] =
         [signal(|p| p.roll_rate), signal(|p| p.steer_rate), signal(|p| p.roll), signal(|p| p.steer)];
     matrix_pencil::eigenvalues(&signals, 1e-3 * DT as f64, 4)?.try_into().ok()

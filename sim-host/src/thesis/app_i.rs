@@ -5,18 +5,20 @@ use super::draw::SPEED;
 use super::item::{Figure, Item, Value};
 use super::published::{Cell, GainRow, Heights, cells, height_cell, published};
 use super::study::Study;
-use crate::basin::{Axis as Disturbed, Column, Method, Search, border, column};
+use crate::basin::{Axis as Disturbed, Column, Method, Search, border, borders, column};
 use crate::report::figure::{Axis, Chart, Line, Look, Marker, Plot, Series};
 use crate::ride::{Conditions, Effort, Ride, Start, rides, side_by_side};
 use crate::rider::Gains;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 /// The grid of disturbances of Tables I.1 and I.2 \[rad/s\]: "± 0.1".
 const GRID: f64 = 0.1;
 const ON_GRID: &str = "the first multiple of 0.1 rad/s that falls";
 
 /// A gain set of Table I.1 or I.2 and its basin at its run's speed.
-struct Set {
+#[derive(Debug)]
+pub(super) struct Set {
     of: &'static Heights,
     row: &'static GainRow,
     /// Number within its run, from 1.
@@ -73,8 +75,12 @@ fn fine(study: &Study) -> f64 {
     if study.quick { WIDE } else { GRID }
 }
 
-/// The gain sets of a table, scanned in steps of `scan_step` \[rad/s\].
-fn sets(study: &Study, table: &str, scan_step: f64) -> Vec<Set> {
+/// The gain sets of a table, scanned in steps of `scan_step` \[rad/s\], stored or computed now.
+fn sets(study: &Study, table: &'static str, scan_step: f64) -> Arc<Vec<Set>> {
+    study.heights.get((table, scan_step), || scanned(study, table, scan_step))
+}
+
+fn scanned(study: &Study, table: &str, scan_step: f64) -> Vec<Set> {
     let of_table = published().height.iter().filter(|h| h.table == table);
     let all: Vec<(&Heights, usize, &GainRow)> =
         of_table.flat_map(|h| h.rows.iter().enumerate().map(move |(i, row)| (h, i + 1, row))).collect();
@@ -189,9 +195,9 @@ fn tried(study: &Study, sets: &[Set], set: &Set, value: Value) -> Value {
     value =
         value.tried("the largest multiple of 0.1 rad/s that does not fall", multiple((last / GRID).round()));
     let speeds: [f64; 2] = [-0.1, 0.1].map(|d| set.of.speed + d);
-    for speed in speeds {
+    for Column { speed, upper, .. } in borders(&conditions, &search(WIDE), &speeds) {
         let name = format!("a speed of {speed:.1} m/s");
-        value = value.tried(&name, first_multiple_after(border(&conditions, &search(WIDE), speed).upper));
+        value = value.tried(&name, first_multiple_after(upper));
     }
     value.tried("a fall is 45 degrees of roll or steer", first_beyond(&conditions, set.of.speed, 45.0))
 }

@@ -11,6 +11,7 @@ use crate::ride::{Conditions, Ride, TracePoint, traced};
 use crate::rider::{Gains, KEYS, RiderTable, Row, catalogue, mean};
 use control::Law;
 use nalgebra::Complex;
+use std::sync::Arc;
 
 /// The speed at which the regression fails \[m/s\].
 const SPEED: f64 = 4.3;
@@ -18,6 +19,9 @@ const SPEED: f64 = 4.3;
 const DISTURBANCE: f64 = 0.5;
 /// The delay of the old cyclist \[s\].
 const DELAY_S: f64 = 0.06;
+/// Time step of the rides \[s\], and the number of steps between drawn points. A finer one changes no printed number.
+const STEP_S: f64 = 2e-3;
+const EVERY: usize = 5;
 const TIME: &str = "Time [s]";
 const TORQUE: &str = "Rider's torque [N m]";
 const LINES: [Line; 3] = [Line::Solid, Line::Dashed, Line::Dotted];
@@ -40,8 +44,14 @@ fn root(study: &Study, gains: Gains, speed: f64) -> Complex<f64> {
 }
 
 fn ride(study: &Study, gains: Gains, speed: f64, seconds: f64) -> (Ride, Vec<TracePoint>) {
-    let conditions = Conditions { time_limit_s: seconds, ..ridden(study, constant(gains, DELAY_S)) };
+    let usual = ridden(study, constant(gains, DELAY_S));
+    let conditions = Conditions { time_limit_s: seconds, step_s: STEP_S, ..usual };
     traced(&conditions, disturbed(speed, DISTURBANCE))
+}
+
+/// The rider's torque over time \[N m\].
+fn torques(trace: &[TracePoint]) -> Vec<(f64, f64)> {
+    over_time(trace, EVERY, |p| p.rider_torque)
 }
 
 /// Outcome of a ride, as text.
@@ -102,8 +112,7 @@ fn compared(study: &Study, sets: &[(String, Gains)], seconds: f64) -> (Plot, Tab
     let mut rows = Vec::new();
     for (i, (name, gains)) in sets.iter().enumerate() {
         let (ride, trace) = ride(study, *gains, SPEED, seconds);
-        let points = over_time(&trace, 10, |p| p.rider_torque);
-        plot.series.push(Series::new(name.clone(), Look::line(i, LINES[i / 6 % 3]), points));
+        plot.series.push(Series::new(name.clone(), Look::line(i, LINES[i / 6 % 3]), torques(&trace)));
         let root = root(study, *gains, SPEED);
         let turning = format!("{:.3}", root.im.abs());
         rows.push(vec![name.clone(), format!("{:+.3}", root.re), turning, ended(&ride, &trace)]);
@@ -200,6 +209,21 @@ pub(super) fn figure_k_2(study: &Study) -> Item {
     Item { figures, tables: vec![roots], notes: vec![note], ..Item::default() }
 }
 
+/// The rider's torque over time \[N m\] after the disturbance, and the rightmost characteristic root \[1/s\].
+#[derive(Debug)]
+pub(super) struct Motion {
+    torques: Vec<(f64, f64)>,
+    root: Complex<f64>,
+}
+
+/// The motion under constant gains at `speed`, stored or computed now.
+fn motion(study: &Study, gains: Gains, speed: f64) -> Arc<Motion> {
+    study.motions.get((gains, speed), || {
+        let (_, trace) = ride(study, gains, speed, 6.0);
+        Motion { torques: torques(&trace), root: root(study, gains, speed) }
+    })
+}
+
 /// The mean at one speed with every gain times 0.9, 1 and 1.1.
 fn factors(study: &Study, name: &str, near: f64) -> Item {
     let table = smart();
@@ -218,10 +242,9 @@ fn factors(study: &Study, name: &str, near: f64) -> Item {
         for (i, factor) in [0.9, 1.0, 1.1].into_iter().enumerate() {
             let mut gains = mean;
             gains.0[key] *= factor;
-            let (_, trace) = ride(study, gains, near, 6.0);
-            let points = over_time(&trace, 10, |p| p.rider_torque);
-            plot.series.push(Series::new(format!("gain × {factor:.1}"), Look::line(i, LINES[i]), points));
-            let root = root(study, gains, near);
+            let Motion { torques, root } = &*motion(study, gains, near);
+            let name = format!("gain × {factor:.1}");
+            plot.series.push(Series::new(name, Look::line(i, LINES[i]), torques.clone()));
             cells.push(format!("{:+.3} ± {:.3}i", root.re, root.im.abs()));
         }
         plots.push(plot);

@@ -6,9 +6,9 @@ use super::item::{Figure, Item, Value};
 use super::study::Study;
 use crate::bicycle::catalogue;
 use crate::bicycle::linear::Linear;
-use crate::eigen::{Feedback, Intuitive, Model, critical_speeds, spectrum};
+use crate::eigen::{Feedback, Intuitive, Model, critical_speeds};
 use crate::report::figure::{Axis, Chart, Line, Look, Plot, Series};
-use crate::ride::{Conditions, Start, TracePoint, traced};
+use crate::ride::{Assist, Conditions, Start, TracePoint, traced};
 use control::Law;
 use std::f64::consts::TAU;
 
@@ -39,21 +39,29 @@ const SMALL: f64 = 0.1;
 
 /// Duration of the ride at v_c \[s\]: the thesis has a full circle after 400 s.
 const CIRCLE_S: f64 = 1000.0;
+/// Duration of its experiments with larger disturbances \[s\].
+const TRIED_S: f64 = 600.0;
+/// Time step of these rides \[s\]: they last long and change slowly. The times of a full circle are those of the usual step within
+/// 1 ms.
+const CIRCLE_STEP_S: f64 = 9e-3;
 
 /// Figure 2.3: the modes of the nonlinear bicycle.
 pub(super) fn figure_2_3(study: &Study) -> Item {
     let (v_w, v_c) = (study.critical.v_w.unwrap_or(f64::NAN), study.critical.v_c.unwrap_or(f64::NAN));
+    let usual = Conditions::thesis(study.bicycle, Assist::None);
+    let lasting = |time_limit_s: f64| Conditions { time_limit_s, ..usual.clone() };
+    let circling = |time_limit_s: f64| Conditions { step_s: CIRCLE_STEP_S, ..lasting(time_limit_s) };
     let rides = [
-        ("weave: 4 m/s", 4.0, 6.0),
-        ("at v_w", v_w, 6.0),
-        ("self-stable: 7 m/s", 7.0, 6.0),
-        ("at v_c", v_c, CIRCLE_S),
-        ("capsize: 14 m/s", 14.0, 20.0),
+        ("weave: 4 m/s", 4.0, lasting(6.0)),
+        ("at v_w", v_w, lasting(6.0)),
+        ("self-stable: 7 m/s", 7.0, lasting(6.0)),
+        ("at v_c", v_c, circling(CIRCLE_S)),
+        ("capsize: 14 m/s", 14.0, lasting(20.0)),
     ];
     let mut plots = Vec::new();
     let mut circle = None;
-    for (title, speed, seconds) in rides {
-        let trace = free_ride(study, speed, SMALL, seconds);
+    for (title, speed, conditions) in rides {
+        let trace = free_ride(&conditions, speed, SMALL);
         if speed == v_c {
             circle = time_of_full_turn(&trace);
         }
@@ -70,7 +78,7 @@ pub(super) fn figure_2_3(study: &Study) -> Item {
     let chart = Chart { title, columns: 2, plots, shaded: String::new() };
     let values = Item::compare("figure-2.3", |cell| {
         let tried =
-            [0.2, 0.25, 0.3].map(|rate| (rate, time_of_full_turn(&free_ride(study, v_c, rate, 600.0))));
+            [0.2, 0.25, 0.3].map(|rate| (rate, time_of_full_turn(&free_ride(&circling(TRIED_S), v_c, rate))));
         tried.iter().fold(Value::new(cell, circle), |value, (rate, time)| {
             value.tried(&format!("a disturbance of {rate} rad/s"), time.unwrap_or(f64::NAN))
         })
@@ -88,18 +96,18 @@ pub(super) fn figure_2_3(study: &Study) -> Item {
     Item { values, figures, notes, ..Item::default() }
 }
 
-fn free_ride(study: &Study, speed: f64, steer_rate: f64, seconds: f64) -> Vec<TracePoint> {
-    let conditions =
-        Conditions { time_limit_s: seconds, ..Conditions::thesis(study.bicycle, crate::ride::Assist::None) };
-    traced(&conditions, Start { speed_m_s: speed, steer_rate_rad_s: steer_rate, roll_rate_rad_s: 0.0 }).1
+fn free_ride(conditions: &Conditions, speed: f64, steer_rate: f64) -> Vec<TracePoint> {
+    traced(conditions, Start { speed_m_s: speed, steer_rate_rad_s: steer_rate, roll_rate_rad_s: 0.0 }).1
 }
 
 /// Time at which the bicycle has turned once about the vertical \[s\].
 fn time_of_full_turn(trace: &[TracePoint]) -> Option<f64> {
     let mut heading = 0.0;
     trace.windows(2).find_map(|w| {
-        heading += 0.5 * (w[0].yaw_rate + w[1].yaw_rate) * (w[1].t - w[0].t);
-        (heading.abs() >= TAU).then_some(w[1].t)
+        let (before, step_s) = (heading, w[1].t - w[0].t);
+        heading += 0.5 * (w[0].yaw_rate + w[1].yaw_rate) * step_s;
+        (heading.abs() >= TAU)
+            .then(|| w[0].t + step_s * (TAU - before.abs()) / (heading.abs() - before.abs()))
     })
 }
 
@@ -161,7 +169,7 @@ pub(super) fn figure_2_7(study: &Study) -> Item {
 
 /// Eigenvalues under eq. 2.16, `(real, imaginary)`.
 fn controlled(model: &Model, v: f64) -> Vec<(f64, f64)> {
-    spectrum(&model.at(v).a).iter().flatten().map(|e| (e.re, e.im)).collect()
+    model.at(v).spectrum().iter().flatten().map(|e| (e.re, e.im)).collect()
 }
 
 fn growth(values: &[(f64, f64)]) -> f64 {
@@ -188,4 +196,21 @@ fn least_capsize_gain(with: impl Fn(f64) -> Model, v_max: f64, speeds: &[f64]) -
         if stable(middle) { high = middle } else { low = middle }
     }
     high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Situation: the ride at v_c after 0.3 rad/s, which turns in the shortest time. Action: the time of a full circle with the long
+    /// rides' step and with the usual one. Must hold: they differ by less than 1 ms.
+    #[test]
+    fn the_longer_step_turns_in_the_same_time() {
+        let study = Study::new(true).unwrap();
+        let usual = Conditions { time_limit_s: 400.0, ..Conditions::thesis(study.bicycle, Assist::None) };
+        let long = Conditions { step_s: CIRCLE_STEP_S, ..usual.clone() };
+        let v_c = study.critical.v_c.unwrap();
+        let [a, b] = [usual, long].map(|c| time_of_full_turn(&free_ride(&c, v_c, 0.3)).unwrap());
+        assert!((300.0..360.0).contains(&a) && (a - b).abs() < 1e-3, "{a} {b}");
+    }
 }

@@ -1,13 +1,16 @@
 //! Data common to all items: the bicycle, the resolution, and basins computed once.
 
 use super::case::{Assisted, Case, Resolution};
+use super::memo::Memo;
+use super::{app_i, app_k};
 use crate::basin::{Basin, Column, Search, together};
 use crate::bicycle::linear::Linear;
 use crate::bicycle::{Geometry, Parameters, catalogue};
 use crate::eigen::{CriticalSpeeds, critical_speeds};
-use crate::ride::Conditions;
+use crate::ride::{Conditions, TracePoint};
+use crate::rider::Gains;
 use rayon::prelude::*;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// The bicycle of the thesis.
 const BICYCLE: &str = "rigid_jason";
@@ -27,7 +30,13 @@ pub struct Study {
     pub resolution: Resolution,
     /// Whether the resolution is reduced for speed.
     pub quick: bool,
-    basins: Mutex<Vec<(Case, Arc<Basin>)>>,
+    basins: Memo<Case, Basin>,
+    /// The sets of Tables I.1 and I.2 with their basins, by table and step of the scan \[rad/s\].
+    pub(super) heights: Memo<(&'static str, f64), Vec<app_i::Set>>,
+    /// Appendix K's motions at constant gains, by gains and speed \[m/s\].
+    pub(super) motions: Memo<(Gains, f64), app_k::Motion>,
+    /// The responses of the uncontrolled bicycle to the disturbance of appendix C, by speed \[m/s\].
+    pub(super) responses: Memo<f64, Vec<TracePoint>>,
 }
 
 impl Study {
@@ -45,7 +54,10 @@ impl Study {
             critical: critical_speeds(&linear, &Assisted::Alone.law()),
             resolution: if quick { Resolution::QUICK } else { Resolution::FULL },
             quick,
-            basins: Mutex::default(),
+            basins: Memo::default(),
+            heights: Memo::default(),
+            motions: Memo::default(),
+            responses: Memo::default(),
         })
     }
 
@@ -56,12 +68,8 @@ impl Study {
 
     /// The basin of a case, stored or computed now.
     pub fn basin(&self, case: &Case) -> Arc<Basin> {
-        if let Some(found) = self.stored(case) {
-            return found;
-        }
-        let search = case.search(&self.resolution);
-        let columns = self.columns_at(case, &search.speeds);
-        self.store(*case, Basin { columns })
+        let columns = || self.columns_at(case, &case.search(&self.resolution).speeds);
+        self.basins.get(*case, || Basin { columns: columns() })
     }
 
     /// The columns of a case's basin at some speeds \[m/s\], computed now.
@@ -73,7 +81,7 @@ impl Study {
 
     /// Whether the basin of a case is stored.
     pub fn has(&self, case: &Case) -> bool {
-        self.stored(case).is_some()
+        self.basins.stored(case).is_some()
     }
 
     /// Computes and stores the basins of `cases`, with all their columns in parallel; calls `finished` after and `stop`
@@ -105,7 +113,7 @@ impl Study {
                 columns.extend(some);
             }
             if columns.len() == searches[i].speeds.len() {
-                self.store(*case, Basin { columns });
+                self.basins.store(*case, Basin { columns });
             }
         }
     }
@@ -113,16 +121,5 @@ impl Study {
     /// Number of columns that [`Self::prepare`] has to compute.
     pub fn columns(&self, cases: &[Case]) -> usize {
         cases.iter().filter(|c| !self.has(c)).map(|c| c.search(&self.resolution).speeds.len()).sum()
-    }
-
-    fn stored(&self, case: &Case) -> Option<Arc<Basin>> {
-        let basins = self.basins.lock().unwrap_or_else(PoisonError::into_inner);
-        basins.iter().find(|(c, _)| c == case).map(|(_, b)| b.clone())
-    }
-
-    fn store(&self, case: Case, basin: Basin) -> Arc<Basin> {
-        let basin = Arc::new(basin);
-        self.basins.lock().unwrap_or_else(PoisonError::into_inner).push((case, basin.clone()));
-        basin
     }
 }

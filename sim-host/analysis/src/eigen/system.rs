@@ -2,6 +2,7 @@
 
 use super::actuator::{ActuatorError, LinearActuator};
 use super::feedback::{Feedback, StaticFeedback};
+use super::qr::spectrum;
 use control::Law;
 use nalgebra::{Complex, ComplexField, DMatrix, DVector, RowDVector};
 use physics::bicycle::{Parameters, linear::Linear};
@@ -34,6 +35,11 @@ impl DelaySystem {
     /// The system matrix without the delay.
     pub fn undelayed(&self) -> DMatrix<f64> {
         &self.a + &self.b * &self.k
+    }
+
+    /// The eigenvalues of `a`, in no order: those of a system without a delayed signal. `None` as [`spectrum`].
+    pub fn spectrum(&self) -> Option<Vec<Complex<f64>>> {
+        spectrum(&self.a)
     }
 
     /// Whether the delay has no effect.

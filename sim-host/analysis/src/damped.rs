@@ -39,16 +39,14 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
     const CELLS: u32 = 12;
     let within = |x: f64, r: &RangeInclusive<f64>| x.clamp(*r.start(), *r.end());
     let clamped = |[omega, beta]: &[f64; 2]| (within(*omega, &bounds.omega), within(*beta, &bounds.beta));
-    let whole = |p: &[f64; 2]| {
-        let (omega, beta) = clamped(p);
-        let [a, b, e] = amplitudes(samples, omega, beta);
-        [a, b, omega, beta, e]
-    };
     let size = squares(samples, |_| 0.0).max(f64::MIN_POSITIVE);
     // Relative to the signal, so that the search's tolerances do not depend on its amplitude.
     let part = |p: &[f64; 2]| {
-        let model = whole(p);
-        1e3 * squares(samples, |t| damped(&model, t)) / size
+        let (omega, beta) = clamped(p);
+        let waves = waves(samples, omega, beta);
+        let [a, b, e] = amplitudes(samples, &waves);
+        let rest = samples.iter().zip(&waves).map(|(&(_, y), [s, c])| (y - (a * s + b * c + e)).powi(2));
+        1e3 * rest.sum::<f64>() / size
     };
     let at = |r: &RangeInclusive<f64>, i: u32| {
         r.start() + (r.end() - r.start()) * (f64::from(i) + 0.5) / f64::from(CELLS)
@@ -56,16 +54,26 @@ pub fn bounded(samples: &Samples, bounds: &Bounds) -> Fitted {
     let cells = (0..CELLS * CELLS).map(|i| [at(&bounds.omega, i / CELLS), at(&bounds.beta, i % CELLS)]);
     let valued = cells.map(|p| (p, part(&p)));
     let start = valued.min_by(|p, q| p.1.total_cmp(&q.1)).map_or([0.0; 2], |(p, _)| p);
-    let found = whole(&minimum(start, part));
+    let (omega, beta) = clamped(&minimum(start, part));
+    let [a, b, e] = amplitudes(samples, &waves(samples, omega, beta));
+    let found = [a, b, omega, beta, e];
     fitted(samples, -found[3], found[2], |t| damped(&found, t))
 }
 
-/// The amplitudes `A`, `B`, `E` by least squares for an oscillation; zeros if there is no solution.
-fn amplitudes(samples: &Samples, omega: f64, beta: f64) -> [f64; 3] {
-    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
-    for &(t, y) in samples {
+/// The damped sine and cosine at each sample.
+fn waves(samples: &Samples, omega: f64, beta: f64) -> Vec<[f64; 2]> {
+    let at = |&(t, _): &(f64, f64)| {
         let ((s, c), decay) = (libm::sincos(omega * t), libm::exp(-beta * t));
-        let row = Vector3::new(s * decay, c * decay, 1.0);
+        [s * decay, c * decay]
+    };
+    samples.iter().map(at).collect()
+}
+
+/// The amplitudes `A`, `B`, `E` of these waves and a constant by least squares; zeros if there is no solution.
+fn amplitudes(samples: &Samples, waves: &[[f64; 2]]) -> [f64; 3] {
+    let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());
+    for (&(_, y), &[s, c]) in samples.iter().zip(waves) {
+        let row = Vector3::new(s, c, 1.0);
         normal += row * row.transpose();
         right += row * y;
     }
