@@ -107,6 +107,16 @@ impl State {
         self.cross_check.roll_correlation()
     }
 
+    /// State of the estimator.
+    pub fn estimate(&self) -> &EstimateState {
+        &self.estimate
+    }
+
+    /// State of the smoothing.
+    pub fn smooth(&self) -> &SmoothState {
+        &self.smooth
+    }
+
     /// Estimated roll angle of the last period, with its error.
     pub fn roll(&self) -> Roll {
         self.roll

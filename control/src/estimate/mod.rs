@@ -15,13 +15,14 @@ pub use config::{EstimateConfig, Place, SOURCES, Source};
 
 use crate::maths::{G, bounded, max, min, rsqrt, sin_cos, sin_cos_within};
 use core::hint::cold_path;
+pub use roll::MAX_INNOVATION_RAD;
 use roll::Roll;
 use steer::Steer;
 
 /// Limits of the input: angular rate \[rad/s\], specific force \[m/s^2\] and speed \[m/s\].
 const INPUT_LIMITS: (f32, f32, f32) = (100.0, 1000.0, 100.0);
 /// Lag of the observation of the roll angle \[s\]: long enough to average the gyro's noise, short compared with a turn.
-const OBSERVATION_LAG_S: f32 = 0.1;
+pub const OBSERVATION_LAG_S: f32 = 0.1;
 /// Speed below which the bicycle stands, and above which it balances by riding \[m/s\].
 const STANDING_M_S: f32 = 0.05;
 const BALANCING_M_S: f32 = 1.5;
@@ -116,6 +117,39 @@ pub struct EstimateState {
     bias: [f32; 2],
     bias_deviation: Option<f32>,
     steer: Steer,
+}
+
+/// What changes in the estimator while the bicycle is ridden.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RidingState {
+    /// Roll angle \[rad\].
+    pub roll_rad: f32,
+    /// Biases of the gyros \[rad/s\].
+    pub bias_rad_s: [f32; 3],
+    /// Variance of the roll angle, covariance, variance of the roll gyro's bias.
+    pub covariance: [f32; 3],
+    /// Unexplained lateral force before lever arm terms, smoothed \[m/s^2\].
+    pub unexplained_m_s2: f32,
+    /// Rates about x and z, smoothed \[rad/s\].
+    pub smooth_rad_s: [f32; 2],
+    /// Roll rate, smoothed for the roll acceleration \[rad/s\].
+    pub slow_rad_s: f32,
+}
+
+impl EstimateState {
+    /// The state of a bicycle that is ridden; `None` before the first step.
+    pub fn riding(&self) -> Option<RidingState> {
+        let run = self.running.as_ref()?;
+        let [y, z] = self.bias;
+        Some(RidingState {
+            roll_rad: run.roll.angle_rad,
+            bias_rad_s: [run.roll.bias_rad_s, y, z],
+            covariance: run.roll.covariance(),
+            unexplained_m_s2: run.unexplained_m_s2,
+            smooth_rad_s: run.smooth,
+            slow_rad_s: run.roll_rate,
+        })
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -269,7 +303,7 @@ fn root(square: f32) -> f32 {
 }
 
 /// Pitch by the fitted polynomial \[rad\].
-fn pitch(fit: &[f32; 6], roll_rad: f32, steer_rad: f32) -> f32 {
+pub fn pitch(fit: &[f32; 6], roll_rad: f32, steer_rad: f32) -> f32 {
     let (r, d) = (bounded(roll_rad, PITCH_FIT_RAD), bounded(steer_rad, PITCH_FIT_RAD));
     let [dd, dr, d4, d3r, d2r2, dr3] = *fit;
     d * (d * dd + r * dr + d * d * (d * d4 + r * d3r) + r * r * (d * d2r2 + r * dr3))

@@ -7,7 +7,7 @@
 use crate::maths::{QUARTER, bounded, max};
 
 /// Largest innovation of one observation that is used in full \[rad\].
-const MAX_INNOVATION_RAD: f32 = 0.3;
+pub const MAX_INNOVATION_RAD: f32 = 0.3;
 
 /// Variance of an unknown roll angle \[rad^2\].
 const UNKNOWN_RAD2: f32 = 1.0;
@@ -30,6 +30,11 @@ impl Roll {
     /// Unknown roll angle, and a bias within `bias_max` at three standard deviations.
     pub(super) fn unknown(bias_max: f32) -> Self {
         Self { p11: UNKNOWN_RAD2, p22: bias_max * bias_max / 9.0, ..Self::default() }
+    }
+
+    /// Variance of the roll angle, covariance, variance of the bias.
+    pub(super) fn covariance(&self) -> [f32; 3] {
+        [self.p11, self.p12, self.p22]
     }
 
     /// Three standard deviations of the roll angle, squared \[rad^2\].

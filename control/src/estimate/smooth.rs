@@ -97,6 +97,11 @@ pub fn step(plan: &SmoothPlan, state: &mut SmoothState, rate_rad_s: f32, age_tic
 }
 
 impl SmoothState {
+    /// Output of the low-pass, and its rate divided by its angular frequency \[rad/s\]; `None` before the first period.
+    pub fn low_pass(&self) -> Option<(f32, f32)> {
+        self.low_rad_s
+    }
+
     /// The interpolated roll rate.
     #[inline(always)]
     fn interpolate_step(&mut self, rate_rad_s: f32, age_ticks: u16) -> f32 {

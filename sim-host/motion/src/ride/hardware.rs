@@ -162,11 +162,10 @@ fn signals(plan: &Plan, of: impl Fn(Sensor) -> f64) -> Signals {
     Signals { roll_rate_rad_s: of(Sensor::Gyro), speed_m_s: of(wheel) }
 }
 
-/// Motion of the rear frame in a lane.
-pub(super) fn lane_frame<const N: usize>(motion: &Motion<Lanes<N>>, lane: usize) -> Frame {
+/// Motion of the rear frame in a lane with this steer angle \[rad\].
+pub(super) fn lane_frame<const N: usize>(motion: &Motion<Lanes<N>>, lane: usize, steer_rad: f64) -> Frame {
     let vector = |v: Vec3<Lanes<N>>| Vec3::new(v.x.0[lane], v.y.0[lane], v.z.0[lane]);
     let (v, pose) = (&motion.actual, &motion.pose);
-    let (sin, cos) = pose.attitude.steer;
     Frame {
         e1: vector(pose.e1),
         k: vector(pose.k),
@@ -180,6 +179,6 @@ pub(super) fn lane_frame<const N: usize>(motion: &Motion<Lanes<N>>, lane: usize)
             omega: vector(v.omega),
             rolling: v.rolling.0[lane],
         },
-        steer_rad: libm::atan2(sin.0[lane], cos.0[lane]),
+        steer_rad,
     }
 }

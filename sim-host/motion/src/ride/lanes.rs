@@ -57,7 +57,10 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
                 (Some(mut hardware), Assist::Firmware(plan), Some(motion)) => {
                     let at = match &ride.full {
                         Some(full) => Frame::new(&full.pose(b), &full.velocities(b), full.angles[2]),
-                        None => lane_frame(motion, lane),
+                        None => {
+                            let (sin, cos) = motion.pose.attitude.steer;
+                            lane_frame(motion, lane, libm::atan2(sin.0[lane], cos.0[lane]))
+                        }
                     };
                     let also = (self.rider_nm.0[lane], self.initial.0[lane]);
                     let read = (&**plan, &self.plant);

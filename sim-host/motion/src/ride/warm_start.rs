@@ -80,6 +80,7 @@ pub(super) fn steady(plan: &Plan, speed_m_s: f64) -> impl FnMut(u32, bool, f64) 
 }
 
 /// State of a ride at t = 0: the controller, and sensors and motor if they are not exact.
+#[derive(Debug)]
 pub(super) struct Warm {
     pub(super) ready: Ready,
     pub(super) hardware: Option<Box<RideHardware>>,
@@ -100,7 +101,7 @@ impl Warm {
 
 /// Cache of warm starts by speed \[m/s\]: rides from the same speed share one if the control step is executed in this program
 /// and nothing is random.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct WarmStart(Vec<(f64, Warm)>);
 
 impl WarmStart {

@@ -3,6 +3,7 @@
 //! A step of the bicycle spans several control periods. In those after its start the readings are extrapolated from the
 //! starts of the last three steps.
 
+use super::calm::{CalmLanes, CalmPlan, LONGER, SETTLED_S};
 use super::limited::LateLaw;
 use crate::num::{Lanes, Scalar};
 use crate::plant::{Frame, Odometry, Plant, Reading};
@@ -12,15 +13,56 @@ use crate::ride::hardware::{self, exact_frame};
 use crate::ride::warm_start::{Ready, WarmStart};
 use crate::ride::{Conditions, ScheduleSpeed, Start};
 use control::estimate::Source;
-use control::{Command, Mode, Plan};
+use control::{Cause, Command, Mode, Plan};
+use std::sync::Mutex;
 
 /// Longest step with a controller in every control period \[s\].
-pub(super) const LONGEST_S: f64 = 5e-3;
+const LONGEST_S: f64 = 5e-3;
+/// Longest step in calm motion \[s\].
+const CALM_S: f64 = 12e-3;
 /// Largest step over more than one control period of a controller that compares its sensors with each other, relative to the
 /// time scale of the motion: with readings extrapolated further, its checks trip at other times.
-pub(super) const EXTRAPOLATED: f64 = 0.02;
+const EXTRAPOLATED: f64 = 0.02;
+/// Fine steps over several control periods, relative to the usual ones.
+const FINE: f64 = 0.5;
 /// Relative error of a time in control periods.
 const ROUNDING: f64 = 1e-6;
+
+/// Longest steps \[s\].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pace {
+    /// With a controller in every control period, or without a controller.
+    pub(super) longest_s: f64,
+    /// The same relative to the time scale of the motion, if it is longer than a control period.
+    extrapolated: f64,
+    /// With the controller of calm motion.
+    calm_s: f64,
+    /// With a controller that remains off.
+    off_s: f64,
+}
+
+impl Pace {
+    /// At most `longest_s`.
+    pub(super) fn unlimited(longest_s: f64) -> Self {
+        Self { longest_s, extrapolated: f64::INFINITY, calm_s: longest_s, off_s: longest_s }
+    }
+
+    /// With a controller; `monitored`: whether it compares its sensors with each other. `most_s` is the longest step for other reasons.
+    pub(super) fn of_controller(monitored: bool, most_s: f64) -> Self {
+        Self {
+            longest_s: LONGEST_S.min(most_s),
+            extrapolated: if monitored { EXTRAPOLATED } else { f64::INFINITY },
+            calm_s: CALM_S.min(most_s),
+            off_s: super::LONGEST_S.min(most_s),
+        }
+    }
+
+    /// Of fine steps with a controller.
+    pub(super) fn fine(self) -> Self {
+        let Self { longest_s, extrapolated, calm_s, off_s } = self;
+        Self { longest_s: FINE * longest_s, extrapolated: FINE * extrapolated, calm_s: FINE * calm_s, off_s }
+    }
+}
 
 /// A law near upright riding.
 #[derive(Clone, Debug)]
@@ -100,6 +142,15 @@ impl<S: Scalar> Line<S> {
 }
 
 impl<const N: usize> Line<Lanes<N>> {
+    /// Sets the line of a lane from the torques of its control periods: their sum, and the sum of their products with the time in
+    /// control periods since the middle of the step.
+    #[inline(always)]
+    pub(super) fn set(&mut self, lane: usize, sum: f64, moment: f64, periods: f64) {
+        let per_step = 1.0 / periods;
+        self.middle_nm.0[lane] = sum * per_step;
+        self.change_nm.0[lane] = 12.0 * moment * per_step * per_step;
+    }
+
     /// The line of a lane.
     pub(super) fn of(&self, lane: usize) -> Line<f64> {
         Line { middle_nm: self.middle_nm.0[lane], change_nm: self.change_nm.0[lane] }
@@ -110,11 +161,17 @@ impl<const N: usize> Line<Lanes<N>> {
 pub(super) struct Controllers<'a, const N: usize> {
     conditions: &'a Conditions,
     plan: &'a Plan,
+    /// `None` if the controller has functions that a calm one does not have.
+    calm: Option<CalmLanes<'a, N>>,
     plant: Plant,
     /// Whether more than roll rate and one speed is read.
     simulated: bool,
+    /// The warm starts that are known, and where they are kept for later rides.
     warm_start: WarmStart,
+    warm_starts: &'a Mutex<WarmStart>,
     lanes: [Option<LaneController>; N],
+    /// The controllers of lanes whose motion has just settled, as they were before.
+    executed: [Option<LaneController>; N],
     /// The torques over the step.
     pub(super) line: Line<Lanes<N>>,
     /// Torques of the control periods in which the step begins \[N m\].
@@ -122,7 +179,8 @@ pub(super) struct Controllers<'a, const N: usize> {
 }
 
 /// The controller in a lane.
-struct LaneController {
+#[derive(Clone)]
+pub(super) struct LaneController {
     ready: Ready,
     /// Control periods begun since t = 0.
     periods: u32,
@@ -131,6 +189,15 @@ struct LaneController {
     /// Readings at the starts of the last steps that began with a control period, latest first, with their times \[s\].
     past: [(f64, Reading); 3],
     known: usize,
+    /// Time since which the motion has been calm, and for which it must be \[s\].
+    calm_since_s: Option<f64>,
+    settled_s: f64,
+    /// Whether the controller is that of calm motion.
+    settled: bool,
+    /// Whether the motion was no longer calm after it had settled.
+    stirred: bool,
+    /// Whether there is no torque to the end of the ride: the switch has been closed since the assist went off.
+    off: bool,
 }
 
 /// The motion at the start of a lane's step.
@@ -144,15 +211,25 @@ pub(super) struct StepStart {
 }
 
 impl<'a, const N: usize> Controllers<'a, N> {
-    pub(super) fn new(conditions: &'a Conditions, plan: &'a Plan) -> Self {
+    pub(super) fn new(
+        conditions: &'a Conditions,
+        plan: &'a Plan,
+        calm: Option<&'a CalmPlan<'a>>,
+        warm_starts: &'a Mutex<WarmStart>,
+    ) -> Self {
         let zero = Lanes([0.0; N]);
         Self {
             conditions,
             plan,
+            calm: calm.map(CalmLanes::new),
             plant: conditions.plant.clone(),
             simulated: hardware::needed(conditions),
-            warm_start: WarmStart::default(),
+            warm_start: warm_starts
+                .lock()
+                .map_or_else(|_| WarmStart::default(), |mut kept| std::mem::take(&mut kept)),
+            warm_starts,
             lanes: std::array::from_fn(|_| None),
+            executed: std::array::from_fn(|_| None),
             line: Line { middle_nm: zero, change_nm: zero },
             held_nm: zero,
         }
@@ -170,6 +247,11 @@ impl<'a, const N: usize> Controllers<'a, N> {
             odometry: Odometry::default(),
             past: [(0.0, steady); 3],
             known: 0,
+            calm_since_s: None,
+            settled_s: SETTLED_S,
+            settled: false,
+            stirred: false,
+            off: false,
         });
     }
 
@@ -181,10 +263,50 @@ impl<'a, const N: usize> Controllers<'a, N> {
         self.lanes[lane].as_ref().is_some_and(full)
     }
 
+    /// Longest step of a lane \[s\] at these angular rates \[rad/s\].
+    pub(super) fn longest_step_s(&self, lane: usize, pace: &Pace, rate_rad_s: f64) -> f64 {
+        match &self.lanes[lane] {
+            Some(one) if one.off => pace.off_s,
+            Some(one) if one.settled => pace.calm_s,
+            _ => pace.longest_s.min((pace.extrapolated / rate_rad_s).max(self.conditions.step_s)),
+        }
+    }
+
+    /// The controller of a lane whose motion has just settled, as it was before.
+    pub(super) fn executed(&mut self, lane: usize) -> Option<LaneController> {
+        self.executed[lane].take()
+    }
+
+    /// Continues a ride from before its motion settled; it must be calm for longer to settle again.
+    pub(super) fn resume(&mut self, lane: usize, executed: LaneController) {
+        let settled_s = LONGER * executed.settled_s;
+        self.lanes[lane] = Some(LaneController { settled_s, ..executed });
+    }
+
+    /// Whether the motion in a lane was no longer calm after it had settled: the checks have then missed a part of it.
+    pub(super) fn stirred(&self, lane: usize) -> bool {
+        self.lanes[lane].as_ref().is_some_and(|one| one.stirred)
+    }
+
+    /// The control periods of the calm lanes' steps that have begun.
+    #[inline(always)]
+    pub(super) fn run_calm(&mut self) {
+        if let Some(calm) = &mut self.calm {
+            calm.run(&mut self.line, &mut self.held_nm);
+        }
+    }
+
     /// The control instants of a lane's step of at most `h` seconds; returns its length: a whole number of control periods, or
     /// a part of one.
     pub(super) fn begin(&mut self, lane: usize, h: f64, start: &StepStart) -> f64 {
-        let Some(one) = &mut self.lanes[lane] else { return h };
+        let one = match &mut self.lanes[lane] {
+            Some(one) if !one.off => one,
+            _ => {
+                (self.line.middle_nm.0[lane], self.line.change_nm.0[lane]) = (0.0, 0.0);
+                self.held_nm.0[lane] = 0.0;
+                return h;
+            }
+        };
         let period_s = self.conditions.step_s;
         let next_s = f64::from(one.periods) * period_s;
         if start.t_s < next_s - ROUNDING * period_s {
@@ -194,6 +316,18 @@ impl<'a, const N: usize> Controllers<'a, N> {
         let now = one.read(self.conditions, self.simulated, start);
         let whole = (h / period_s + ROUNDING) as u32;
         let periods = if one.known < 3 { 1 } else { whole.max(1) };
+        if let Some(calm) = &mut self.calm {
+            if one.settles(calm.plan, &now, start.t_s) {
+                self.executed[lane] = Some(one.clone());
+                one.settled = true;
+                calm.enter(lane, &one.ready.controller);
+            }
+            if one.settled {
+                one.stirred |= !calm.begin(lane, &one.past, periods);
+                one.periods += periods;
+                return f64::from(periods) * period_s;
+            }
+        }
         let first = if one.known < 3 { now } else { one.extrapolated(0.0, period_s) };
         let mut held_nm = one.step(self.plan, &first);
         self.held_nm.0[lane] = held_nm;
@@ -206,14 +340,34 @@ impl<'a, const N: usize> Controllers<'a, N> {
             sum += held_nm;
             moment += held_nm * (f64::from(period) + 0.5 - 0.5 * f64::from(periods));
         }
-        let per_step = 1.0 / f64::from(periods);
-        self.line.middle_nm.0[lane] = sum * per_step;
-        self.line.change_nm.0[lane] = 12.0 * moment * per_step * per_step;
+        self.line.set(lane, sum, moment, periods.into());
         if whole == 0 { h } else { f64::from(periods) * period_s }
     }
 }
 
+impl<const N: usize> Drop for Controllers<'_, N> {
+    fn drop(&mut self) {
+        if let Ok(mut kept) = self.warm_starts.lock() {
+            *kept = std::mem::take(&mut self.warm_start);
+        }
+    }
+}
+
 impl LaneController {
+    /// Whether the motion settles, by these readings; notes since when it is calm, and whether it is no longer.
+    fn settles(&mut self, plan: &CalmPlan, now: &Reading, t_s: f64) -> bool {
+        if !plan.covers(now) {
+            self.stirred |= self.settled;
+            self.calm_since_s = None;
+            return false;
+        }
+        let calm_s = t_s - *self.calm_since_s.get_or_insert(t_s);
+        !self.settled
+            && self.known == 3
+            && calm_s >= self.settled_s
+            && plan.free(&self.ready.controller, &self.command)
+    }
+
     /// One control period: the torque \[N m\].
     fn step(&mut self, plan: &Plan, reading: &Reading) -> f64 {
         let reported = Reading { motor_torque_nm: self.command.torque_nm.into(), ..*reading };
@@ -221,11 +375,19 @@ impl LaneController {
         self.command = control::step(plan, &mut self.ready.controller, &frame);
         self.ready.ticks = self.ready.ticks.wrapping_add(1);
         self.periods += 1;
+        self.off = !self.command.mode.drives()
+            && self.command.causes.has(Cause::SwitchHeld)
+            && self.ready.controller.authority() == 0.0
+            && self.command.torque_nm == 0.0;
         self.command.torque_nm.into()
     }
 
     /// The readings at the start of a step, which are stored.
     fn read(&mut self, conditions: &Conditions, simulated: bool, start: &StepStart) -> Reading {
+        // Of a ride that is continued from here.
+        if self.known > 0 && self.past[0].0 == start.t_s {
+            return self.past[0].1;
+        }
         let (roll_rate, speed) = start.measured;
         let mut now = if simulated {
             let point_m = conditions.plant.sensors.imu.point_m;
@@ -248,13 +410,18 @@ impl LaneController {
     fn extrapolated(&self, ahead_s: f64, period_s: f64) -> Reading {
         let [(t0, y0), (t1, y1), (t2, y2)] = &self.past;
         let (first_s, second_s) = (t0 - t1, t1 - t2);
-        let curved = ahead_s * (ahead_s + first_s) / (first_s + second_s);
-        // The weights of the three readings.
-        let (by_first, by_second) = ((ahead_s + curved) / first_s, curved / second_s);
-        let mut ahead = y0.combined([1.0 + by_first, -by_first - by_second, by_second], y1, y2);
+        let mut ahead = if ahead_s > 0.0 { y0.combined(weights(&self.past, ahead_s), y1, y2) } else { *y0 };
         let steps = (2.0 * ahead_s - period_s + first_s) / (first_s + second_s);
         ahead.accel_m_s2 =
             std::array::from_fn(|i| y0.accel_m_s2[i] + steps * (y0.accel_m_s2[i] - y1.accel_m_s2[i]));
         ahead
     }
+}
+
+/// The weights of the last three readings in the parabola through them, `ahead_s` after the latest.
+fn weights([(t0, _), (t1, _), (t2, _)]: &[(f64, Reading); 3], ahead_s: f64) -> [f64; 3] {
+    let (first_s, second_s) = (t0 - t1, t1 - t2);
+    let curved = ahead_s * (ahead_s + first_s) / (first_s + second_s);
+    let (by_first, by_second) = ((ahead_s + curved) / first_s, curved / second_s);
+    [1.0 + by_first, -by_first - by_second, by_second]
 }

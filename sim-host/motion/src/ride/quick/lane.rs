@@ -7,6 +7,7 @@ use crate::ride::event::{fallen, largest_angles, time_of_fall};
 use crate::ride::{Conditions, FallCause, Outcome};
 
 /// One ride in its lane.
+#[derive(Clone)]
 pub(super) struct Lane {
     /// Index of the ride's start.
     pub(super) index: usize,
@@ -41,6 +42,11 @@ impl Lane {
             full: None,
             forecast_s: 0.0,
         }
+    }
+
+    /// The same after this number of steps.
+    pub(super) fn with_steps(self, steps: u32) -> Self {
+        Self { steps, ..self }
     }
 
     /// Whether errors had long to grow after a singular configuration.

@@ -4,6 +4,8 @@
 //! The exact rides ([`super::rides`]) have the control period as their step and record the effort. These have a step of
 //! their own in each lane, up to 20 ms, and end as soon as the linear model decides ([`super::forecast`]).
 
+mod calm;
+mod calm_start;
 mod controller;
 mod forecast;
 mod lag;
@@ -18,18 +20,22 @@ use super::hardware::{self, lane_frame};
 use super::instructions::Instructions;
 use super::sensor::readings;
 use super::substeps::{nearer, stiffness};
+use super::warm_start::WarmStart;
 use super::{Assist, Conditions, Outcome, Start};
 use crate::bicycle::{FullState, Geometry, Motion, State, Torques};
 use crate::integrate::{AHEAD, STAGES, WEIGHT, rate};
 use crate::num::{Aligned, Lanes};
 use crate::plant::Frame;
 use crate::rider::Instant;
-use controller::{Controllers, StepStart};
+use calm::CalmPlan;
+use calm_start::CalmStart;
+use controller::{Controllers, Pace, StepStart};
 use forecast::{Forecast, Now};
 use lane::Lane;
 use limited::{LateLaw, Limited};
 use riders::QuickRiders;
 use source::{Given, Source};
+use std::sync::{Arc, Mutex};
 
 /// Longest step \[s\].
 const LONGEST_S: f64 = 20e-3;
@@ -50,8 +56,6 @@ const SENSITIVE_S: f64 = 0.3;
 const SHORTER: f64 = 0.5;
 /// Largest of fine steps, relative to the time scale of the motion.
 const LARGEST_FINE: f64 = 0.025;
-/// Fine steps over several control periods, relative to the usual ones.
-const FINE_PERIODS: f64 = 0.5;
 /// With a rider, the cosine of roll down to which the step shortens with it: nearer to the ground mostly the yaw rate grows,
 /// which is counted already. Without a rider more falls bounce there, and their times need the shorter steps.
 const LEAST_COS: f64 = 0.2;
@@ -90,12 +94,13 @@ pub struct Quick<'a> {
     conditions: &'a Conditions,
     source: Source<'a>,
     forecast: Option<Forecast>,
-    /// Longest step \[s\].
-    longest_s: f64,
+    /// The controller in calm motion, if its steps are otherwise executed in every control period.
+    calm: Option<CalmPlan<'a>>,
+    pace: Pace,
+    /// Warm starts of earlier rides.
+    warm: Arc<Mutex<WarmStart>>,
     /// Largest step relative to the time scale of the motion.
     largest: f64,
-    /// Largest step over more than one control period, relative to the time scale of the motion.
-    extrapolated: f64,
     /// Factor between late amplitudes and the limit that decides.
     clear: f64,
     /// Whether the steps are fine. Otherwise sensitive rides, and those that are not decided, are ridden again.
@@ -121,26 +126,36 @@ impl<'a> Quick<'a> {
             _ => conditions.plant.exact() && conditions.sensor_delay_ticks == 0,
         };
         let bare = late_or_exact && !actuator.friction.acts() && actuator.stop.is_none();
-        let longest_s = if source.sampled().is_some() { controller::LONGEST_S } else { LONGEST_S };
-        let monitored = source.sampled().is_some() && hardware::needed(conditions);
-        let longest_s = conditions.rider.as_ref().map_or(longest_s, riders::longest_step_s).min(longest_s);
-        if !bare || longest_s < WORTH * conditions.step_s {
+        let of_rider_s = conditions.rider.as_ref().map_or(f64::INFINITY, riders::longest_step_s);
+        let pace = match source.sampled() {
+            Some(_) => Pace::of_controller(hardware::needed(conditions), of_rider_s),
+            None => Pace::unlimited(LONGEST_S.min(of_rider_s)),
+        };
+        let calm = source.sampled().and_then(|plan| CalmPlan::new(conditions, plan));
+        if !bare || pace.longest_s < WORTH * conditions.step_s {
             return None;
         }
         let forecast = Forecast::new(conditions, &source);
-        let extrapolated = if monitored { controller::EXTRAPOLATED } else { f64::INFINITY };
         let largest = if conditions.rider.is_some() { LARGEST_RIDDEN } else { LARGEST };
         let [clear, _] = clear(conditions, &source);
-        Some(Self { conditions, source, forecast, longest_s, largest, extrapolated, clear, fine: false })
+        Some(Self {
+            conditions,
+            source,
+            forecast,
+            calm,
+            pace,
+            warm: Arc::default(),
+            largest,
+            clear,
+            fine: false,
+        })
     }
 
     /// The same in fine steps, which narrow a border.
     pub fn fine(&self) -> Self {
-        let sampled = self.source.sampled().is_some();
-        let longest_s = if sampled { FINE_PERIODS * self.longest_s } else { self.longest_s };
-        let extrapolated = FINE_PERIODS * self.extrapolated;
+        let pace = if self.source.sampled().is_some() { self.pace.fine() } else { self.pace };
         let [_, clear] = clear(self.conditions, &self.source);
-        Self { largest: LARGEST_FINE, longest_s, extrapolated, clear, fine: true, ..self.clone() }
+        Self { largest: LARGEST_FINE, pace, clear, fine: true, ..self.clone() }
     }
 }
 
@@ -184,7 +199,7 @@ impl Quick<'_> {
 /// Simulates every ride once; results in the order of `starts`.
 #[inline(always)]
 pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
-    let Quick { conditions, source, forecast, longest_s, largest, extrapolated, clear, .. } = quick;
+    let Quick { conditions, source, forecast, calm, pace, warm, largest, clear, .. } = quick;
     let b = &conditions.bicycle;
     let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
@@ -197,9 +212,11 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     let mut slopes = [still; 2];
     let jump_s = source.law().map_or(f64::INFINITY, LateLaw::jump_s);
     let mut riders = conditions.rider.as_ref().map(|rider| QuickRiders::<N>::new(rider, jump_s));
-    let mut controllers = source.sampled().map(|plan| Controllers::<N>::new(conditions, plan));
+    let mut controllers =
+        source.sampled().map(|plan| Controllers::<N>::new(conditions, plan, calm.as_ref(), warm));
     let mut limited = source.law().and_then(Limited::<N>::new);
     let mut lanes: [Option<Lane>; N] = std::array::from_fn(|_| None);
+    let mut calm_starts: [Option<CalmStart>; N] = std::array::from_fn(|_| None);
     loop {
         for (lane, ride) in lanes.iter_mut().enumerate().filter(|(_, ride)| ride.is_none()) {
             let next = waiting.next();
@@ -244,7 +261,10 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                     |lane, t, rate_rad_s| {
                         let of_rider = riders.as_ref().map(|riders| riders.longest_step_s(lane, t));
                         let of_law = limited.as_ref().map(|limited| limited.longest_step_s(lane, t));
-                        let longest_s = longest_s.min((extrapolated / rate_rad_s).max(conditions.step_s));
+                        let longest_s = match &controllers {
+                            Some(controllers) => controllers.longest_step_s(lane, pace, rate_rad_s),
+                            None => pace.longest_s,
+                        };
                         of_rider.into_iter().chain(of_law).fold(longest_s, f64::min)
                     },
                 );
@@ -256,8 +276,8 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                     }
                 }
                 if let Some(controllers) = &mut controllers {
-                    // A copy: what no other function refers to can stay in registers.
-                    let seen = Aligned(motion);
+                    // Copies: what no other function refers to can stay in registers.
+                    let (seen, steer_rad) = (Aligned(motion), Aligned(start.0.steer));
                     for (lane, ride) in lanes.iter().enumerate() {
                         let Some(ride) = ride else { continue };
                         let (frame, measured) = match &ride.full {
@@ -266,13 +286,22 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                                 let frame = Frame::new(&full.pose(b), &velocities, full.angles[2]);
                                 (frame, readings(conditions, &velocities, initial.0[lane]))
                             }
-                            None => (lane_frame(&seen.0, lane), (measured.0.0[lane], measured.1.0[lane])),
+                            None => {
+                                let frame = lane_frame(&seen.0, lane, steer_rad.0.0[lane]);
+                                (frame, (measured.0.0[lane], measured.1.0[lane]))
+                            }
                         };
                         let rider_torque_nm =
                             riders.as_ref().map_or(0.0, |riders| riders.torque_nm().0[lane]);
-                        let start = StepStart { t_s: ride.t, frame, measured, rider_torque_nm };
-                        h.0[lane] = controllers.begin(lane, h.0[lane], &start);
+                        let instant = StepStart { t_s: ride.t, frame, measured, rider_torque_nm };
+                        h.0[lane] = controllers.begin(lane, h.0[lane], &instant);
+                        if let Some(controller) = controllers.executed(lane) {
+                            let rider = riders.as_ref().map(|riders| riders.before(lane));
+                            let (state, ride) = (start.0.lane(lane), ride.clone());
+                            calm_starts[lane] = Some(CalmStart { state, ride, rider, controller });
+                        }
                     }
+                    controllers.run_calm();
                 }
             } else {
                 let per_s = Lanes([1.0; N]) / (h * part);
@@ -308,6 +337,18 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
 
         for (lane, slot) in lanes.iter_mut().enumerate() {
             let Some(ride) = slot else { continue };
+            if let Some(controllers) = &mut controllers
+                && controllers.stirred(lane)
+                && let Some(earlier) = calm_starts[lane].take()
+            {
+                *ride = earlier.ride.with_steps(ride.steps + 1);
+                end.0.set_lane(lane, &earlier.state);
+                controllers.resume(lane, earlier.controller);
+                if let (Some(riders), Some(rider)) = (&mut riders, earlier.rider) {
+                    riders.resume(lane, rider);
+                }
+                continue;
+            }
             let (before, h) = (start.0.lane(lane), h.0[lane]);
             let mut after = end.0.lane(lane);
             if nearer(stiff.map(|q| q.0[lane]), NEAREST) {

@@ -30,6 +30,12 @@ pub(super) struct QuickRiders<'a, const N: usize> {
     arriving: [Lanes<N>; 3],
 }
 
+/// A rider at the start of a step.
+pub(super) struct RiderStart {
+    state: RiderState<f64>,
+    history: Option<SignalHistory>,
+}
+
 impl<'a, const N: usize> QuickRiders<'a, N> {
     /// The signals can jump at `jump_s` \[s\]: infinite if they do not.
     pub(super) fn new(rider: &'a Rider, jump_s: f64) -> Self {
@@ -51,6 +57,20 @@ impl<'a, const N: usize> QuickRiders<'a, N> {
         self.end.set_lane(lane, &RiderState::fresh());
         if let Some(histories) = &mut self.histories {
             histories[lane].clear();
+        }
+    }
+
+    /// The rider in a lane before its signal at the start of the step.
+    pub(super) fn before(&self, lane: usize) -> RiderStart {
+        let history = self.histories.as_ref().map(|histories| histories[lane].clone());
+        RiderStart { state: self.start.lane(lane), history }
+    }
+
+    /// Continues in a lane from an earlier step's start.
+    pub(super) fn resume(&mut self, lane: usize, from: RiderStart) {
+        self.end.set_lane(lane, &from.state);
+        if let (Some(histories), Some(history)) = (&mut self.histories, from.history) {
+            histories[lane] = history;
         }
     }
 
