@@ -1,7 +1,7 @@
 //! Generalised forces of an external lateral force on the rear frame.
 
 use super::{Geometry, Motion, Torques, Velocities};
-use crate::num::{Scalar, Vec3};
+use crate::num::{Scalar, Vec3, sin_cos};
 use std::fmt;
 
 /// A material point of the rear frame on the symmetry plane, by its place in the upright bicycle.
@@ -45,7 +45,7 @@ impl ForcePoint {
 
     /// From P, the rear wheel's centre, in the steer-axis frame \[m\]: forward across the steer axis, and down along it.
     fn arm(self, b: &Geometry) -> [f64; 2] {
-        let (s, c) = b.lam_sin_cos;
+        let (s, c) = sin_cos(b.lam);
         let (x, z) = (self.ahead_m, b.rR - self.height_m);
         [x * c - z * s, x * s + z * c]
     }

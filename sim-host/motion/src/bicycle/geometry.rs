@@ -39,8 +39,6 @@ pub struct Geometry {
     pub rF: f64,
     /// Steer axis tilt \[rad\].
     pub lam: f64,
-    /// Its sine and cosine.
-    pub lam_sin_cos: (f64, f64),
     /// Gravity \[m/s^2\].
     pub g: f64,
     /// From P to the steer axis along u1 \[m\].
@@ -83,7 +81,6 @@ impl Geometry {
             rR: p.rR,
             rF: p.rF,
             lam: p.lam,
-            lam_sin_cos: (s, c),
             g: p.g,
             d1,
             d2: Q[1],

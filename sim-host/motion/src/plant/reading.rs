@@ -229,7 +229,7 @@ impl Odometry {
         now: &Frame,
     ) -> Reading {
         let v = &now.velocities;
-        let (sin_lam, cos_lam) = b.lam_sin_cos;
+        let (sin_lam, cos_lam) = sin_cos(b.lam);
         if let Some(last) = &self.last {
             self.heading_rad += 0.5 * period_s * (last.yaw_rate + v.yaw);
         }

@@ -1,7 +1,7 @@
 //! The controller's parameters that follow from a bicycle's geometry.
 
 use super::{Geometry, Gyrostat, Motion, State, Torques, pitch_from_upright};
-use crate::num::Dual;
+use crate::num::{Dual, sin_cos};
 use control::Config;
 use control::estimate::{EstimateConfig, Place, Source};
 use control::param::{ParamError, ParamSpec, ParamVisitor};
@@ -152,7 +152,7 @@ fn pitch_fit(b: &Geometry) -> [f64; 6] {
 /// `v yaw' + (ITxx roll'' + ITxz yaw'') / (mT hT) = g roll` (Meijaard et al. 2007, eq. A6, without the
 /// steer's own terms).
 fn balance(b: &Geometry) -> Place {
-    let (s, c) = b.lam_sin_cos;
+    let (s, c) = sin_cos(b.lam);
     let mut sums = [0.0; 3];
     let mut add = |body: &Gyrostat, forward: f64| {
         let [along, down] = [body.com[0] + forward, body.com[1]];

@@ -7,7 +7,6 @@
 use super::controller::Line;
 use crate::num::{Lanes, Scalar, sin_cos};
 use crate::plant::Reading;
-use crate::ride::Conditions;
 use control::estimate::{self, MAX_INNOVATION_RAD, OBSERVATION_LAG_S};
 use control::maths::G;
 use control::{Calibration, Command, Config, Limits, Mode, Plan, State, Wheel};
@@ -102,7 +101,7 @@ struct Parabola<S>([S; 3]);
 
 impl<'a> CalmPlan<'a> {
     /// `None` if the controller has other functions, or its sensors are not mounted as the bicycle's axes.
-    pub(super) fn new(conditions: &Conditions, plan: &'a Plan) -> Option<Self> {
+    pub(super) fn new(plan: &'a Plan, period_s: f64) -> Option<Self> {
         let config = plan.config();
         let polarity_checked = config.calibration.polarity_checked;
         let Limits { max_torque_nm, rise_nm_s, fall_nm_s, .. } = config.limits;
@@ -121,7 +120,6 @@ impl<'a> CalmPlan<'a> {
             && !sensors.rider_torque.fitted
             && config.limits.speed_cap.is_none()
             && config.limits.end_stop.is_none_or(|stop| f64::from(stop.soft_rad) >= STEER_RAD);
-        let period_s = conditions.step_s;
         let change_nm = |rate: Option<f32>| rate.map_or(f64::INFINITY, |rate| f64::from(rate) * period_s);
         bare.then(|| Self {
             config,
@@ -415,4 +413,82 @@ impl<S: Scalar> Parabola<S> {
 #[inline(always)]
 fn bounded<const N: usize>(x: Lanes<N>, most: f64) -> Lanes<N> {
     x.map(|x| x.min(most).max(-most))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ride::hardware::exact_frame;
+    use crate::ride::warm_start::{Engaged, engaged};
+    use std::f64::consts::TAU;
+
+    const SPEED_M_S: f64 = 4.0;
+    const PERIOD_S: f64 = 1e-3;
+    const HEIGHT_M: f64 = 0.8;
+
+    /// Readings at `t_s` of a bicycle that sways, steering into the fall; the specific force is that of the earlier time `force_s`.
+    fn swaying(t_s: f64, force_s: f64) -> Reading {
+        let rate = TAU * 0.8;
+        let (sin, cos) = sin_cos(rate * t_s);
+        let roll = 0.05 * sin;
+        let yaw_rad_s = 0.4 * sin;
+        let force_sin = sin_cos(rate * force_s).0;
+        let accel = 0.4 * force_sin * SPEED_M_S
+            - f64::from(G) * 0.05 * force_sin
+            - HEIGHT_M * 0.05 * rate * rate * force_sin;
+        Reading {
+            gyro_rad_s: [0.05 * rate * cos, yaw_rad_s * roll, yaw_rad_s],
+            accel_m_s2: [0.0, accel, -f64::from(G)],
+            steer_rad: 0.11 * sin,
+            steer_rate_rad_s: 0.11 * rate * cos,
+            ..Reading::steady(SPEED_M_S, G.into())
+        }
+    }
+
+    /// Given the product's controller in calm motion, when it is computed in steps of twelve control periods, then the mean torque
+    /// of every step is that of the control step within 0.5 % of the largest torque.
+    #[test]
+    fn the_torque_is_that_of_the_control_step() {
+        let mut config = Config::product();
+        config.calibration.polarity_checked = true;
+        // The bicycle of this motion is no linear bicycle.
+        config.response.motor = None;
+        let plan = config.plan().expect("a valid configuration");
+        let calm = CalmPlan::new(&plan, PERIOD_S).expect("a controller without other functions");
+        let mut lanes = CalmLanes::<1>::new(&calm);
+        let Engaged { mut state, mut ticks, mut command } = engaged(&plan, SPEED_M_S, G.into());
+        let zero = Lanes([0.0]);
+        let mut line = Line::straight(zero, zero);
+        let mut held_nm = zero;
+        let (mut largest_nm, mut worst_nm) = (0.0_f64, 0.0_f64);
+        for step in 0..300 {
+            let at = |step: i32| 0.012 * f64::from(step);
+            if step == 80 {
+                assert!(calm.free(&state, &command), "{command:?}");
+                lanes.enter(0, &state);
+            }
+            if step >= 80 {
+                let past =
+                    [step, step - 1, step - 2].map(|step| (at(step), swaying(at(step), at(step) - 0.006)));
+                assert!(calm.covers(&past[0].1));
+                assert!(lanes.begin(0, &past, 12));
+                lanes.run(&mut line, &mut held_nm);
+            }
+            let mut sum = 0.0;
+            for period in 0..12 {
+                let t_s = at(step) + PERIOD_S * f64::from(period);
+                let motor_torque_nm = command.torque_nm.into();
+                let reading = Reading { motor_torque_nm, ..swaying(t_s, t_s - 0.5 * PERIOD_S) };
+                command = control::step(&plan, &mut state, &exact_frame(&plan, &reading, ticks, true));
+                ticks += 1;
+                sum += f64::from(command.torque_nm) / 12.0;
+            }
+            if step >= 80 {
+                largest_nm = largest_nm.max(sum.abs());
+                worst_nm = worst_nm.max((line.at(0.5).0[0] - sum).abs());
+            }
+        }
+        assert!(largest_nm > 1.0, "{largest_nm}");
+        assert!(worst_nm < 0.005 * largest_nm, "{worst_nm} of {largest_nm} N m");
+    }
 }

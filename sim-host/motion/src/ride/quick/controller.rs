@@ -142,6 +142,11 @@ impl<S: Scalar> Line<S> {
 }
 
 impl<const N: usize> Line<Lanes<N>> {
+    /// The torque in the middle of the step, and its change over the step \[N m\].
+    pub(super) fn straight(middle_nm: Lanes<N>, change_nm: Lanes<N>) -> Self {
+        Self { middle_nm, change_nm }
+    }
+
     /// Sets the line of a lane from the torques of its control periods: their sum, and the sum of their products with the time in
     /// control periods since the middle of the step.
     #[inline(always)]
@@ -230,7 +235,7 @@ impl<'a, const N: usize> Controllers<'a, N> {
             warm_starts,
             lanes: std::array::from_fn(|_| None),
             executed: std::array::from_fn(|_| None),
-            line: Line { middle_nm: zero, change_nm: zero },
+            line: Line::straight(zero, zero),
             held_nm: zero,
         }
     }
