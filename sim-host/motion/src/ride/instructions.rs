@@ -229,29 +229,33 @@ mod tests {
     use crate::ride::Assist;
     use control::{Config, Law};
 
-    /// Rides from gentle to violent, more than fill the lanes, on every set of instructions that this processor has: the same
-    /// bits as one after the other.
+    /// Rides from gentle to violent, more than fill the lanes, with a law and with the product's controller, on every set of
+    /// instructions that this processor has: the same bits as one after the other.
     #[test]
     fn every_set_of_instructions_gives_the_same_rides() {
         let shipped = physics::bicycle::catalogue::load("rigid_jason").unwrap().parameters.to_values();
         let b = Geometry::new(&Parameters::from_values(&shipped));
-        let plan = Config::thesis(Law::H { cut: false }).plan().unwrap();
-        let conditions = Conditions::thesis(b, Assist::Firmware(Box::new(plan)));
         let start =
             |i: u32| Start { speed_m_s: 4.0, steer_rate_rad_s: 0.6 * f64::from(i), ..Start::default() };
         let starts: Vec<Start> = (1..=40).map(start).collect();
-        let quick = Quick::new(&conditions).unwrap();
-        let one_by_one = in_turn(&conditions, &starts, None, &mut Backend::Local);
-        let quick_one_by_one = quick::run::<1>(&quick, &starts);
-        let fell = one_by_one.iter().filter(|ride| ride.fell()).count();
-        assert!((5..=35).contains(&fell), "{fell} of {} rides fall", starts.len());
-        for set in Instructions::available() {
-            assert_eq!(set.rides(&conditions, &starts), one_by_one, "{set:?}");
-            assert_eq!(set.quick_rides(&quick, &starts), quick_one_by_one, "{set:?}");
-            for few in [1, 2, 4, 5, 8, 9] {
-                assert_eq!(set.rides(&conditions, &starts[..few]), one_by_one[..few], "{set:?}, {few}");
-                let quick = set.quick_rides(&quick, &starts[..few]);
-                assert_eq!(quick, quick_one_by_one[..few], "{set:?}, {few}");
+        let mut product = Config::product();
+        product.calibration.polarity_checked = true;
+        for config in [Config::thesis(Law::H { cut: false }), product] {
+            let plan = config.plan().unwrap();
+            let conditions = Conditions::thesis(b, Assist::Firmware(Box::new(plan)));
+            let quick = Quick::new(&conditions).unwrap();
+            let one_by_one = in_turn(&conditions, &starts, None, &mut Backend::Local);
+            let quick_one_by_one = quick::run::<1>(&quick, &starts);
+            let fell = one_by_one.iter().filter(|ride| ride.fell()).count();
+            assert!((5..=35).contains(&fell), "{fell} of {} rides fall", starts.len());
+            for set in Instructions::available() {
+                assert_eq!(set.rides(&conditions, &starts), one_by_one, "{set:?}");
+                assert_eq!(set.quick_rides(&quick, &starts), quick_one_by_one, "{set:?}");
+                for few in [1, 2, 4, 5, 8, 9] {
+                    assert_eq!(set.rides(&conditions, &starts[..few]), one_by_one[..few], "{set:?}, {few}");
+                    let quick = set.quick_rides(&quick, &starts[..few]);
+                    assert_eq!(quick, quick_one_by_one[..few], "{set:?}, {few}");
+                }
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The control crate in quick rides: its step in every control period, with sensors and motor that are exact.
 //!
 //! A step of the bicycle spans several control periods. In those after its start the readings are extrapolated from the
-//! starts of the last three steps.
+//! starts of the last three steps. In calm motion less is executed ([`super::calm`]), and nothing once a controller remains off.
 
 use super::calm::{CalmLanes, CalmPlan, LONGER, SETTLED_S};
 use super::limited::LateLaw;
