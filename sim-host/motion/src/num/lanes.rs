@@ -4,16 +4,17 @@
 //! | ---: | --- | --- |
 //! | 16 | 2 of 8 | AVX-512 |
 //! | 8 | 2 of 4 | AVX2 |
+//! | 4 | 1 of 4 | AVX2 |
 //! | 1 | 1 of 1 | of every processor |
 //! | any other | as the compiler finds | of every processor of the target |
 //!
-//! Lanes of the first two rows are used only in [`crate::ride`]'s functions for these instructions, which are called where the
+//! Lanes of the first three rows are used only in [`crate::ride`]'s functions for these instructions, which are called where the
 //! processor has them.
 
 use super::Scalar;
 use super::exp::exp;
 #[cfg(target_arch = "x86_64")]
-use super::registers::{Avx2, Avx512};
+use super::registers::{Avx2, Avx512, OneOfAvx2};
 use super::registers::{One, Registers};
 use super::sincos::{by_quadrant, reduced};
 use control::law::real::Real;
@@ -56,6 +57,8 @@ macro_rules! in_registers {
             16 => return Self(Avx512::$operation($(Avx512::load($operand.0)),+).numbers()),
             #[cfg(target_arch = "x86_64")]
             8 => return Self(Avx2::$operation($(Avx2::load($operand.0)),+).numbers()),
+            #[cfg(target_arch = "x86_64")]
+            4 => return Self(OneOfAvx2::$operation($(OneOfAvx2::load($operand.0)),+).numbers()),
             1 => return Self(One::$operation($(One::load($operand.0)),+).numbers()),
             _ => (),
         }
@@ -116,6 +119,8 @@ impl<const N: usize> Scalar for Lanes<N> {
             16 => return Self(Avx512::constant(value).numbers()),
             #[cfg(target_arch = "x86_64")]
             8 => return Self(Avx2::constant(value).numbers()),
+            #[cfg(target_arch = "x86_64")]
+            4 => return Self(OneOfAvx2::constant(value).numbers()),
             1 => return Self(One::constant(value).numbers()),
             _ => (),
         }
@@ -134,6 +139,8 @@ impl<const N: usize> Scalar for Lanes<N> {
             16 => return Self::by_quadrant::<Avx512>(s, c, quadrant),
             #[cfg(target_arch = "x86_64")]
             8 => return Self::by_quadrant::<Avx2>(s, c, quadrant),
+            #[cfg(target_arch = "x86_64")]
+            4 => return Self::by_quadrant::<OneOfAvx2>(s, c, quadrant),
             1 => return Self::by_quadrant::<One>(s, c, quadrant),
             _ => (),
         }

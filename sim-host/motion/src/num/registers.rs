@@ -89,56 +89,52 @@ impl Registers for One {
     }
 }
 
-/// Two registers: enough independent operations to hide part of the latencies.
+/// Numbers in as many registers as indices are listed. Two have enough independent operations to hide part of the latencies; one takes
+/// less time if more lanes would remain empty.
 #[cfg(target_arch = "x86_64")]
-macro_rules! two_registers {
+macro_rules! vector_registers {
     (
-        $name:ident: $number:ident, $constant:ident, $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident,
+        $name:ident: [$number:ident; $count:literal] at [$($i:literal),+],
+        $constant:ident, $add:ident $sub:ident $mul:ident $div:ident $sqrt:ident,
         $bits:ident $of_bits:ident $integers:ident $minus:ident $and:ident $and_not:ident $or:ident $xor:ident $left:ident
     ) => {
         #[derive(Clone, Copy)]
-        pub(in crate::num) struct $name([$number; 2]);
+        pub(in crate::num) struct $name([$number; $count]);
 
         // SAFETY of every block: the caller's processor has the instructions.
         impl Registers for $name {
             #[inline(always)]
             fn constant(value: f64) -> Self {
-                Self(unsafe { [$constant(value); 2] })
+                Self(unsafe { [$constant(value); $count] })
             }
             #[inline(always)]
             fn add(self, other: Self) -> Self {
-                Self(unsafe { [$add(self.0[0], other.0[0]), $add(self.0[1], other.0[1])] })
+                Self(unsafe { [$($add(self.0[$i], other.0[$i])),+] })
             }
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                Self(unsafe { [$sub(self.0[0], other.0[0]), $sub(self.0[1], other.0[1])] })
+                Self(unsafe { [$($sub(self.0[$i], other.0[$i])),+] })
             }
             #[inline(always)]
             fn mul(self, other: Self) -> Self {
-                Self(unsafe { [$mul(self.0[0], other.0[0]), $mul(self.0[1], other.0[1])] })
+                Self(unsafe { [$($mul(self.0[$i], other.0[$i])),+] })
             }
             #[inline(always)]
             fn div(self, other: Self) -> Self {
-                Self(unsafe { [$div(self.0[0], other.0[0]), $div(self.0[1], other.0[1])] })
+                Self(unsafe { [$($div(self.0[$i], other.0[$i])),+] })
             }
             #[inline(always)]
             fn sqrt(self) -> Self {
-                Self(unsafe { [$sqrt(self.0[0]), $sqrt(self.0[1])] })
+                Self(unsafe { [$($sqrt(self.0[$i])),+] })
             }
             #[inline(always)]
             fn neg(self) -> Self {
-                Self(unsafe {
-                    [
-                        $of_bits($xor($bits(self.0[0]), $integers(i64::MIN))),
-                        $of_bits($xor($bits(self.0[1]), $integers(i64::MIN))),
-                    ]
-                })
+                Self(unsafe { [$($of_bits($xor($bits(self.0[$i]), $integers(i64::MIN)))),+] })
             }
             #[inline(always)]
             fn by_quadrant(s: Self, c: Self, quadrant: Self) -> (Self, Self) {
-                let (sin_0, cos_0) = Self::one_by_quadrant(s.0[0], c.0[0], quadrant.0[0]);
-                let (sin_1, cos_1) = Self::one_by_quadrant(s.0[1], c.0[1], quadrant.0[1]);
-                (Self([sin_0, sin_1]), Self([cos_0, cos_1]))
+                let pairs = [$(Self::one_by_quadrant(s.0[$i], c.0[$i], quadrant.0[$i])),+];
+                (Self([$(pairs[$i].0),+]), Self([$(pairs[$i].1),+]))
             }
         }
 
@@ -161,14 +157,20 @@ macro_rules! two_registers {
 }
 
 #[cfg(target_arch = "x86_64")]
-two_registers! {
-    Avx2: __m256d, _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
+vector_registers! {
+    Avx2: [__m256d; 2] at [0, 1], _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
     _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
     _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
 }
 #[cfg(target_arch = "x86_64")]
-two_registers! {
-    Avx512: __m512d, _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
+vector_registers! {
+    OneOfAvx2: [__m256d; 1] at [0], _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
+    _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
+    _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
+}
+#[cfg(target_arch = "x86_64")]
+vector_registers! {
+    Avx512: [__m512d; 2] at [0, 1], _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
     _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_andnot_si512
     _mm512_or_si512 _mm512_xor_si512 _mm512_slli_epi64
 }
