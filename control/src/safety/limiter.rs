@@ -250,6 +250,13 @@ fn reachable(plan: &LimiterPlan, last: f32, elapsed_us: u32) -> (f32, f32) {
 /// Parts of the window: one that is being filled, and enough full ones to cover the window.
 const PARTS: usize = 9;
 
+impl Window {
+    /// Longest time over which the change is limited, at control periods of `period_s` \[s\]: the window in whole parts.
+    pub fn longest_s(&self, period_s: f32) -> f32 {
+        1e-3 * f32::from(self.ms) * PARTS as f32 / (PARTS - 1) as f32 + period_s
+    }
+}
+
 /// Torques within the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "bitcode", derive(bitcode::Encode, bitcode::Decode))]

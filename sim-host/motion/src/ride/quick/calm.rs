@@ -9,6 +9,7 @@ use crate::num::{Lanes, Scalar, sin_cos};
 use crate::plant::Reading;
 use control::estimate::{self, MAX_INNOVATION_RAD, OBSERVATION_LAG_S};
 use control::maths::G;
+use control::safety::limits::Window;
 use control::{Calibration, Command, Config, Limits, Mode, Plan, State, Wheel};
 use std::f64::consts::SQRT_2;
 
@@ -102,34 +103,67 @@ struct Parabola<S>([S; 3]);
 impl<'a> CalmPlan<'a> {
     /// `None` if the controller has other functions, or its sensors are not mounted as the bicycle's axes.
     pub(super) fn new(plan: &'a Plan, period_s: f64) -> Option<Self> {
-        let config = plan.config();
-        let polarity_checked = config.calibration.polarity_checked;
-        let Limits { max_torque_nm, rise_nm_s, fall_nm_s, .. } = config.limits;
-        let sensors = &config.input;
-        let bare = !config.capsize.is_on()
-            && config.track.is_none()
-            && config.latency == Default::default()
-            && config.calibration == Calibration { polarity_checked, ..Default::default() }
-            && config.estimate.needs_motion()
-            && config.smooth.lag_s > 0.0
+        // Every field is named, so that a new function of the controller is considered here.
+        let config @ Config {
+            rate_hz: _,
+            law: _,
+            dead_band: _,
+            capsize,
+            calibration,
+            input: sensors,
+            estimate,
+            cross: _,
+            response: _,
+            permit: _,
+            latency,
+            predict: _,
+            smooth,
+            track,
+            limits,
+        } = plan.config();
+        let polarity_checked = calibration.polarity_checked;
+        let Limits {
+            max_torque_nm,
+            speed_cap,
+            taper: _,
+            rise_nm_s,
+            fall_nm_s,
+            rider_torque: _,
+            rider_motion,
+            window,
+            end_stop,
+            limp_fraction: _,
+        } = limits;
+        let change_nm = |rate: &Option<f32>| rate.map_or(f64::INFINITY, |rate| f64::from(rate) * period_s);
+        let rise_nm = change_nm(rise_nm_s);
+        // The limit of the change acts before the window does.
+        let idle = |window: &Window| {
+            rise_nm / period_s * f64::from(window.longest_s(period_s as f32)) <= window.nm.into()
+        };
+        let bare = !capsize.is_on()
+            && track.is_none()
+            && *latency == Default::default()
+            && *calibration == Calibration { polarity_checked, ..Default::default() }
+            && estimate.needs_motion()
+            && smooth.lag_s > 0.0
             && sensors.gyro.fitted
             && sensors.accel.fitted
             && sensors.steer.fitted
             && sensors.front_wheel.fitted
             && sensors.rear_wheel.fitted
             && !sensors.rider_torque.fitted
-            && config.limits.speed_cap.is_none()
-            && config.limits.end_stop.is_none_or(|stop| f64::from(stop.soft_rad) >= STEER_RAD);
-        let change_nm = |rate: Option<f32>| rate.map_or(f64::INFINITY, |rate| f64::from(rate) * period_s);
+            && speed_cap.is_none()
+            && window.as_ref().is_none_or(idle)
+            && end_stop.is_none_or(|stop| f64::from(stop.soft_rad) >= STEER_RAD);
         bare.then(|| Self {
             config,
             period_s,
-            angle_rad: SQRT_2 * period_s / f64::from(config.smooth.lag_s),
-            per_bound: config.smooth.most_rad_s.map_or(0.0, |most| 1.0 / f64::from(most)),
+            angle_rad: SQRT_2 * period_s / f64::from(smooth.lag_s),
+            per_bound: smooth.most_rad_s.map_or(0.0, |most| 1.0 / f64::from(most)),
             largest_nm: max_torque_nm.map_or(f64::INFINITY, f64::from),
-            rise_nm: change_nm(rise_nm_s),
+            rise_nm,
             fall_nm: change_nm(fall_nm_s),
-            against: config.limits.rider_motion.map_or((f64::INFINITY, f64::INFINITY), |rider| {
+            against: rider_motion.map_or((f64::INFINITY, f64::INFINITY), |rider| {
                 (rider.steer_rate_rad_s.into(), 1e-3 * f64::from(rider.after_ms))
             }),
         })
@@ -443,6 +477,26 @@ mod tests {
             steer_rate_rad_s: 0.11 * rate * cos,
             ..Reading::steady(SPEED_M_S, G.into())
         }
+    }
+
+    /// Given the product's controller, when a function is switched on that acts in calm motion, then it has no calm form.
+    #[test]
+    fn only_functions_that_are_computed_act() {
+        let mut product = Config::product();
+        product.calibration.polarity_checked = true;
+        let is_calm = |change: &dyn Fn(&mut Config)| {
+            let mut config = product.clone();
+            change(&mut config);
+            CalmPlan::new(&config.plan().expect("a valid configuration"), PERIOD_S).is_some()
+        };
+        assert!(is_calm(&|_| ()));
+        assert!(is_calm(&|config| config.limits.window = None));
+        // 100 N m/s reach 5.7 N m in the longest window of 50 ms.
+        assert!(is_calm(&|config| config.limits.window = Some(Window { ms: 50, nm: 5.8 })));
+        assert!(!is_calm(&|config| config.limits.window = Some(Window { ms: 50, nm: 5.7 })));
+        assert!(!is_calm(&|config| config.limits.rise_nm_s = None));
+        assert!(!is_calm(&|config| config.limits.speed_cap = Some(Default::default())));
+        assert!(!is_calm(&|config| config.smooth.lag_s = 0.0));
     }
 
     /// Given the product's controller in calm motion, when it is computed in steps of twelve control periods, then the mean torque
