@@ -10,7 +10,10 @@ use crate::plant::Reading;
 use control::estimate::{self, MAX_INNOVATION_RAD, OBSERVATION_LAG_S};
 use control::maths::G;
 use control::safety::limits::Window;
-use control::{Calibration, Command, Config, Limits, Mode, Plan, State, Wheel};
+use control::sensors::cross_check::CrossCheckConfig;
+use control::{
+    Calibration, Command, Config, EngagementConfig, Limits, Mode, Plan, State, ValidationConfig, Wheel,
+};
 use std::f64::consts::SQRT_2;
 
 /// Largest steer angle \[rad\], steer rate and angular rate of the frame \[rad/s\] of calm motion, in which no check has been found
@@ -112,9 +115,9 @@ impl<'a> CalmPlan<'a> {
             calibration,
             input: sensors,
             estimate,
-            cross: _,
+            cross,
             response: _,
-            permit: _,
+            permit,
             latency,
             predict: _,
             smooth,
@@ -140,18 +143,20 @@ impl<'a> CalmPlan<'a> {
         let idle = |window: &Window| {
             rise_nm / period_s * f64::from(window.longest_s(period_s as f32)) <= window.nm.into()
         };
+        // Sensors, ranges and conditions with which no check was found to act in calm motion.
+        let Config { input: usual, cross: usual_cross, permit: usual_permit, .. } = Config::product();
+        let CrossCheckConfig { wheelbase_m, tilt_rad, .. } = *cross;
+        let need_polarity = permit.need_polarity;
+        let checked = *sensors == ValidationConfig { wheel: sensors.wheel, ..usual }
+            && *cross == CrossCheckConfig { wheelbase_m, tilt_rad, ..usual_cross }
+            && *permit == EngagementConfig { need_polarity, ..usual_permit };
         let bare = !capsize.is_on()
             && track.is_none()
             && *latency == Default::default()
             && *calibration == Calibration { polarity_checked, ..Default::default() }
             && estimate.needs_motion()
             && smooth.lag_s > 0.0
-            && sensors.gyro.fitted
-            && sensors.accel.fitted
-            && sensors.steer.fitted
-            && sensors.front_wheel.fitted
-            && sensors.rear_wheel.fitted
-            && !sensors.rider_torque.fitted
+            && checked
             && speed_cap.is_none()
             && window.as_ref().is_none_or(idle)
             && end_stop.is_none_or(|stop| f64::from(stop.soft_rad) >= STEER_RAD);
@@ -497,6 +502,12 @@ mod tests {
         assert!(!is_calm(&|config| config.limits.rise_nm_s = None));
         assert!(!is_calm(&|config| config.limits.speed_cap = Some(Default::default())));
         assert!(!is_calm(&|config| config.smooth.lag_s = 0.0));
+        // Checks of other ranges may act in calm motion.
+        assert!(!is_calm(&|config| config.permit.fallen_rad = Some(0.6)));
+        assert!(!is_calm(&|config| config.cross.yaw_rad_s = Some(0.2)));
+        assert!(!is_calm(&|config| config.input.gyro.fitted = false));
+        assert!(is_calm(&|config| config.input.wheel = Wheel::Rear));
+        assert!(is_calm(&|config| config.cross.wheelbase_m = 1.2));
     }
 
     /// Given the product's controller in calm motion, when it is computed in steps of twelve control periods, then the mean torque
