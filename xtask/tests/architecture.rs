@@ -1,6 +1,6 @@
 //! Flight cards: the dependencies between crates and between top modules, their figure and their tables.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 use xtask::architecture::check::{self, Edge, Found};
 use xtask::architecture::graph::{Graph, parse};
@@ -67,6 +67,20 @@ fn figure_and_tables_are_up_to_date() {
     }
 }
 
+/// The number of parts of a graph that no dependency joins.
+fn parts(graph: &Graph) -> usize {
+    let mut first: BTreeMap<&str, &str> = graph.nodes.keys().map(|name| (&**name, &**name)).collect();
+    for _ in 0..graph.nodes.len() {
+        for (name, node) in &graph.nodes {
+            for used in &node.uses {
+                let least = first[&**name].min(first[&**used]);
+                first.extend([(&**name, least), (&**used, least)]);
+            }
+        }
+    }
+    first.into_values().collect::<BTreeSet<_>>().len()
+}
+
 /// Situation: the declared graphs, drawn.
 /// Action: compare each box with its neighbours, and each line with all boxes.
 /// Must hold: boxes of a layer are 16 px apart; every line ends at boxes and passes none. A box has room for its name
@@ -91,11 +105,12 @@ fn boxes_and_lines_do_not_overlap() {
                 assert!(line.iter().all(|&(x, y)| !inside(x, y)), "{name}: {line:?}");
             }
         }
-        // A tree at least, without the boxes that no arrow joins. Those stand beside another.
+        // A tree at least of each part that arrows join, without the boxes that no arrow joins. Those stand beside another.
         let used = |name: &String| graph.nodes.values().any(|node| node.uses.contains(name));
         let (joined, alone): (Vec<_>, Vec<_>) =
             graph.nodes.iter().partition(|(name, node)| !node.uses.is_empty() || used(name));
-        assert!(panel.edges.len() >= joined.len() - 1, "{}", graph.name);
+        let parts = parts(&graph);
+        assert!(panel.edges.len() >= joined.len() - (parts - alone.len()), "{}", graph.name);
         for (name, _) in alone {
             let a = &panel.boxes[name];
             let beside =
