@@ -309,9 +309,8 @@ fn the_page_has_the_unstable_fits() {
         let (speeds, _) = speeds.unwrap_or_else(|| panic!("{name}: {check}"));
         let unstable = |line: &str| match line.split_once("unstable at ") {
             Some((_, rest)) => rest.split(' ').next().unwrap_or_default().to_owned(),
-            None => {
-                line.ends_with(", stable").then(|| "0".into()).unwrap_or_else(|| panic!("{name}: {line}"))
-            }
+            None if line.ends_with(", stable") => "0".into(),
+            None => panic!("{name}: {line}"),
         };
         let fits: Vec<String> =
             check.lines().filter(|line| line.starts_with("gains ")).map(unstable).collect();

@@ -1,4 +1,4 @@
-//! Number types of the equations of motion: one source for `f64`, for several rides side by side ([`Lanes`])
+//! Number types of the equations of motion: one source for `f64`, for several rides side by side (`Lanes`)
 //! and for exact derivatives ([`Dual`]).
 //!
 //! Only `+ - * /`, square root and [`sin_cos`] are used. None depends on the C library or on fused
