@@ -5,7 +5,6 @@
 //! their own in each lane, up to 20 ms, and end as soon as the linear model decides ([`super::forecast`]).
 
 mod calm;
-mod calm_start;
 mod controller;
 mod forecast;
 mod lag;
@@ -27,8 +26,7 @@ use crate::integrate::{AHEAD, STAGES, WEIGHT, rate};
 use crate::num::{Aligned, Lanes};
 use crate::plant::Frame;
 use crate::rider::Instant;
-use calm::CalmPlan;
-use calm_start::CalmStart;
+use calm::{CalmPlan, CalmStart};
 use controller::{Controllers, Pace, StepStart};
 use forecast::{Forecast, Now};
 use lane::Lane;
