@@ -86,6 +86,7 @@ fn of_speeds(conditions: &Conditions, count: u32) -> f64 {
         scan_step: 0.25,
         tolerance: 0.01,
         method: Method::Fast,
+        efforts: false,
     };
     least(|| basin(conditions, &search, |_| (), || false).expect("in range"))
 }

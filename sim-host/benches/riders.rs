@@ -34,6 +34,7 @@ fn main() {
         scan_step: 0.25,
         tolerance: 0.01,
         method: Method::Fast,
+        efforts: false,
     };
     let (seconds, found) = timed(3, || basin(&conditions, &search, |_| (), || false).expect("in range"));
     let work = found.work();

@@ -123,6 +123,7 @@ fn whole_basin(bencher: Bencher, conditions: &Conditions, tenths: std::ops::Rang
         scan_step: 0.25,
         tolerance: 0.01,
         method: Method::Fast,
+        efforts: false,
     };
     bencher.bench_local(|| basin(conditions, &search, |_| (), || false));
 }

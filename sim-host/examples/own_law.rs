@@ -25,6 +25,7 @@ pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
         scan_step: 0.5,
         tolerance: 0.05,
         method: Method::Fast,
+        efforts: false,
     };
     let [published, own] = [published, own].map(|conditions| basin(&conditions, &search, |_| (), || false));
     let (published, own) = (published?, own?);

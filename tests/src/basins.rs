@@ -39,6 +39,7 @@ pub fn search(speeds: &[f64], max_rate: f64) -> Search {
         scan_step: 0.25,
         tolerance: 0.01,
         method: Method::Fast,
+        efforts: true,
     }
 }
 

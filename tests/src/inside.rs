@@ -76,6 +76,7 @@ fn found(conditions: Border) -> Border {
         scan_step,
         tolerance: 0.02 * scan_step,
         method: Method::Fast,
+        efforts: false,
     };
     let column = border(&with(conditions.rider, assisted(H)), &search, speed);
     assert!(!column.capped, "{conditions:?} ends beyond {max_rate} rad/s");

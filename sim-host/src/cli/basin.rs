@@ -90,8 +90,9 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
         return Ok(ended);
     }
     let setup = setup(&scenario)?;
-    let task = BasinTask::new(setup).map_err(|e| named(&scenario, &e))?;
+    let mut task = BasinTask::new(setup).map_err(|e| named(&scenario, &e))?;
     let outputs = args.outputs.open(Further { netcdf: args.netcdf.as_deref(), ..Further::default() })?;
+    task.search.efforts = outputs.has_efforts();
     interrupt::install();
     let pool = args.threads.pool()?;
     let bar = progress(outputs.shows_progress(), "basin", task.columns(), "columns");
@@ -201,7 +202,7 @@ fn summary(basin: &Basin, search: &Search, fall: &FallCriterion, seconds: f64, t
             );
         }
     }
-    let undecided = spans(basin, |c| c.border.is_some_and(|r| r.outcome == Outcome::Undecided));
+    let undecided = spans(basin, |c| c.outcome == Some(Outcome::Undecided));
     if !undecided.is_empty() {
         let _ = writeln!(
             text,

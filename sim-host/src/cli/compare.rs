@@ -7,7 +7,7 @@ use super::progress::progress;
 use super::scenario_error::named as named_option;
 use super::threads::ThreadArgs;
 use super::{Ended, Failure, interrupt};
-use crate::basin::{Basin, Bound, Column, Work, basin};
+use crate::basin::{Basin, Bound, Column, Search, Work, basin};
 use crate::bicycle::linear::Linear;
 use crate::commands::Setup;
 use crate::eigen::critical_speeds;
@@ -63,6 +63,7 @@ pub(super) fn run(args: &Args) -> Result<Ended, Failure> {
     let mut scenario = Scenario { search: common_search(&requested)?, ..Scenario::default() };
     args.search.apply(&mut scenario)?;
     let search = scenario.search.resolve(ridden).map_err(|e| named_option(&scenario, &e))?;
+    let search = Search { efforts: false, ..search };
     let own_search = SearchChoice { speeds: Some(Speeds::List(search.speeds.clone())), ..scenario.search };
     let resolved = ResolvedSearch::new(&search);
     check(&requested, &resolved.axis)?;
@@ -227,6 +228,7 @@ fn read(path: &str) -> Result<(Case, String), Failure> {
             capped,
             islands,
             scan,
+            outcome: None,
             border: None,
             beyond: None,
             work: Work::default(),

@@ -102,8 +102,15 @@ fn search(option: &str, step: f64, scan_step: f64, tolerance: f64) -> Result<Sea
     // The last speed is 7.5 m/s even if the step does not divide the range.
     let steps = (5.5 / step - 1e-9).ceil() as usize;
     let speeds = (0..=steps).map(|i| ((2.0 + i as f64 * step).min(7.5) * 1e9).round() / 1e9).collect();
-    let search =
-        Search { speeds, axis: Axis::SteerRate, max_rate: 20.0, scan_step, tolerance, method: Method::Fast };
+    let search = Search {
+        speeds,
+        axis: Axis::SteerRate,
+        max_rate: 20.0,
+        scan_step,
+        tolerance,
+        method: Method::Fast,
+        efforts: false,
+    };
     search.check()?;
     Ok(search)
 }

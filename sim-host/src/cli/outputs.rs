@@ -140,6 +140,11 @@ impl Outputs {
         !self.quiet && !self.all().iter().any(|(_, output)| output.is_standard())
     }
 
+    /// Whether an output has the efforts of rides.
+    pub(super) fn has_efforts(&self) -> bool {
+        self.json.is_some() || self.netcdf.is_some()
+    }
+
     /// Writes the frames, if requested.
     pub(super) fn write_frames(&self, frames: impl FnOnce() -> Vec<u8>) -> Result<(), Failure> {
         self.frames.as_ref().map_or(Ok(()), |output| Ok(output.finish(&frames())?))

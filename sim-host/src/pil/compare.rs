@@ -98,7 +98,7 @@ pub fn same_basin(here: &Basin, there: &Basin) -> Result<(), Difference> {
 }
 
 fn same_column(here: &Column, there: &Column) -> Result<(), Difference> {
-    let Column { speed, upper, capped, islands, scan, border, beyond, work } = here;
+    let Column { speed, upper, capped, islands, scan, outcome, border, beyond, work } = here;
     let at = |what: &str| format!("{what} at {speed} m/s");
     same(&at("the upper border"), upper, &there.upper)?;
     same(&at("whether nothing falls"), capped, &there.capped)?;
@@ -107,6 +107,7 @@ fn same_column(here: &Column, there: &Column) -> Result<(), Difference> {
         same(&at(&format!("the ride from {} rad/s", a.rate)), a, b)?;
     }
     same(&at("the number of rides"), &scan.len(), &there.scan.len())?;
+    same(&at("the outcome at the border"), outcome, &there.outcome)?;
     same(&at("the ride at the border"), border, &there.border)?;
     same(&at("the fall beyond it"), beyond, &there.beyond)?;
     same(&at("the work"), work, &there.work)

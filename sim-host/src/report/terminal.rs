@@ -95,7 +95,17 @@ mod tests {
         };
         let scan = (1..=8).map(f64::from).map(|rate| ScanPoint { rate, outcome: outcome(rate) }).collect();
         let islands = if capped { vec![] } else { vec![Island { from: 6.0, to: 7.0 }] };
-        Column { speed, upper, capped, islands, scan, border: None, beyond: None, work: Work::default() }
+        Column {
+            speed,
+            upper,
+            capped,
+            islands,
+            scan,
+            outcome: None,
+            border: None,
+            beyond: None,
+            work: Work::default(),
+        }
     }
 
     fn basin_text(columns: Vec<Column>, width: usize) -> String {

@@ -84,6 +84,7 @@ impl SearchChoice {
             scan_step: self.scan_step,
             tolerance: self.tolerance,
             method: self.method,
+            efforts: true,
         };
         search.check()?;
         if self.adaptive_speeds.is_some() && search.speeds.len() < 2 {

@@ -37,6 +37,7 @@ pub fn search(step: f64) -> Search {
         scan_step: 0.25,
         tolerance: 0.01,
         method: Method::Fast,
+        efforts: false,
     }
 }
 

@@ -64,6 +64,7 @@ fn search(scan_step: f64) -> Search {
         scan_step,
         tolerance: 0.005,
         method: Method::Fast,
+        efforts: false,
     }
 }
 

@@ -133,6 +133,7 @@ impl Case {
             scan_step: resolution.scan_step,
             tolerance: resolution.tolerance,
             method: Method::Fast,
+            efforts: false,
         }
     }
 }

@@ -66,6 +66,7 @@ mod tests {
             capped: false,
             islands: vec![],
             scan,
+            outcome: None,
             border: None,
             beyond: None,
             work: Work::default(),

@@ -20,6 +20,7 @@ fn coarse() -> Search {
         scan_step: 1.5,
         tolerance: 0.2,
         method: Method::Fast,
+        efforts: false,
     }
 }
 

@@ -65,6 +65,7 @@ fn height(conditions: &Conditions, speed: f64) -> f64 {
         scan_step: 0.25,
         tolerance: 0.02,
         method: Method::Fast,
+        efforts: false,
     };
     border(conditions, &search, speed).upper
 }

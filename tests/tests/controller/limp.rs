@@ -34,6 +34,7 @@ fn mean_height(law: &Law, lost: &str, part: f32) -> f64 {
             scan_step: 0.5,
             tolerance: 0.05,
             method: Method::Fast,
+            efforts: false,
         };
         border(&conditions, &search, *speed).upper
     };

@@ -133,6 +133,7 @@ fn outline(points: &[(f64, f64)]) -> Basin {
         capped: false,
         islands: Vec::new(),
         scan: Vec::new(),
+        outcome: None,
         border: None,
         beyond: None,
         work: Work::default(),

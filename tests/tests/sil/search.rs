@@ -6,7 +6,7 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sim_host::basin::{Axis, Column, Method, PlaneSearch, Search, basin, border, borders, plane, together};
 use sim_host::plant::Supply;
-use sim_host::ride::{Conditions, Imu, Outcome, Quick, Start, rides, side_by_side};
+use sim_host::ride::{Conditions, Foreseen, Imu, Outcome, Quick, Start, rides, side_by_side};
 use sim_host::rider::Rider;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
 use tests::fault_reactions::{product, rider};
@@ -25,17 +25,26 @@ fn both(conditions: &Conditions, fast: &Search) -> [Vec<Column>; 2] {
     [fast, &plain].map(|search| basin(conditions, search, |_| (), || false).expect("a basin").columns)
 }
 
-/// Compares all but the computing effort: bit for bit, the times of falls of the scan within [`TIME_S`]. Returns the number
-/// of falls, and of those that differ by more or in their cause.
+/// Compares all but the computing effort: bit for bit, the times of falls of the scan within [`TIME_S`]; and the fast search without
+/// the efforts of the rides at the borders. Returns the number of falls, and of those that differ by more or in their cause.
 fn compared(conditions: &Conditions, fast: &Search) -> (usize, usize) {
+    let without = Search { efforts: false, ..fast.clone() };
+    let without = basin(conditions, &without, |_| (), || false).expect("a basin").columns;
     let [fast, plain] = both(conditions, fast);
+    for (fast, without) in fast.iter().zip(without) {
+        assert_eq!(Column { border: None, work: without.work, ..fast.clone() }, without);
+    }
     assert_eq!(fast.len(), plain.len());
     let (mut falls, mut apart) = (0, 0);
     for (fast, plain) in fast.iter().zip(&plain) {
         let at = fast.speed;
         assert_eq!((fast.upper, fast.capped), (plain.upper, plain.capped), "height at {at} m/s");
         assert_eq!(fast.islands, plain.islands, "islands at {at} m/s");
-        assert_eq!((fast.border, fast.beyond), (plain.border, plain.beyond), "border at {at} m/s");
+        assert_eq!(
+            (fast.outcome, fast.border, fast.beyond),
+            (plain.outcome, plain.border, plain.beyond),
+            "border at {at} m/s"
+        );
         for (fast, plain) in fast.scan.iter().zip(&plain.scan) {
             assert_eq!(fast.rate, plain.rate);
             match (fast.outcome.time_to_fall_s(), plain.outcome.time_to_fall_s()) {
@@ -322,7 +331,10 @@ fn heights_are_the_same_together_and_alone() {
     for search in [&fast, &plain] {
         let some = borders(&conditions, search, &search.speeds);
         for (one, other) in some.iter().zip(alone(search)) {
-            assert_eq!((one.upper, one.border, one.beyond), (other.upper, other.border, other.beyond));
+            assert_eq!(
+                (one.upper, one.outcome, one.border, one.beyond),
+                (other.upper, other.outcome, other.border, other.beyond)
+            );
             assert_eq!(one.scan, other.scan, "{} m/s", one.speed);
         }
         assert_eq!(some.len(), 5);
@@ -331,6 +343,43 @@ fn heights_are_the_same_together_and_alone() {
     assert_eq!(together(&conditions, &fast, left), 3.min(2 * side_by_side()));
     assert_eq!(together(&conditions, &fast, 1000 * left), 2 * side_by_side());
     assert_eq!(together(&conditions, &plain, left), 1);
+}
+
+/// Situation: random disturbances under laws and beside riders, of rides that quick rides expect not to fall. Action: decide their
+/// outcomes, exact for a second. Must hold: the outcomes of exact rides; most end before the time limit, and some of those that later
+/// leave the settled motion fall, at the same time.
+#[test]
+fn settled_rides_end_as_exact_ones() {
+    let cases = [
+        assisted(H),
+        assisted(Law::Cl2 { k: 4.0 }),
+        ideal(H),
+        ridden("young", alone()),
+        ridden("smart", assisted(H)),
+        alone(),
+    ];
+    let mut runner = TestRunner::deterministic();
+    let (mut early, mut all, mut fallen) = (0, 0, 0);
+    for conditions in &cases {
+        let strategy = (2.0..8.0, -9.0..9.0, -1.0..1.0);
+        let mut start = || {
+            let (speed_m_s, steer_rate_rad_s, roll_rate_rad_s) =
+                strategy.new_tree(&mut runner).expect("a value").current();
+            Start { speed_m_s, steer_rate_rad_s, roll_rate_rad_s }
+        };
+        let starts: Vec<Start> = (0..150).map(|_| start()).collect();
+        let quick = Quick::new(conditions).expect("quick rides");
+        let foreseen = |&start: &Start| Foreseen { start, lasts_s: conditions.time_limit_s, exact_s: 1.0 };
+        let decided = quick.decided(&starts.iter().map(foreseen).collect::<Vec<_>>());
+        for (decided, exact) in decided.iter().zip(rides(conditions, &starts)) {
+            assert_eq!((decided.start, decided.outcome), (exact.start, exact.outcome), "{:?}", exact.start);
+            let later = exact.outcome.time_to_fall_s().is_some_and(|time_s| time_s > 1.5);
+            fallen += usize::from(later);
+            all += usize::from(!exact.fell());
+            early += usize::from(decided.end.t < conditions.time_limit_s && !exact.fell());
+        }
+    }
+    assert!(all > 300 && 4 * early > 3 * all && fallen > 5, "{early} of {all} early, {fallen} late falls");
 }
 
 /// Situation: a plane of disturbances, and the height alone at one speed. Action: search both fast and plainly.
@@ -344,7 +393,7 @@ fn fast_and_plain_planes_and_heights_agree() {
         [fast, plain].map(|search| plane(&conditions, &search, |_| (), || false).expect("a plane"));
     assert_eq!(fast.rays.len(), 10);
     for (fast, plain) in fast.rays.iter().zip(&plain.rays) {
-        assert_eq!((fast.column.upper, fast.column.border), (plain.column.upper, plain.column.border));
+        assert_eq!((fast.column.upper, fast.column.outcome), (plain.column.upper, plain.column.outcome));
     }
     assert!(fast.work().steps < plain.work().steps);
     let fast = search(&[4.0], 30.0);

@@ -17,6 +17,7 @@ fn height(conditions: &Conditions) -> f64 {
         scan_step: 0.25,
         tolerance: 1e-4,
         method: Method::Fast,
+        efforts: false,
     };
     border(conditions, &search, SPEED).upper
 }

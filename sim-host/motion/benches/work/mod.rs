@@ -58,6 +58,7 @@ pub(crate) fn small_basin(conditions: &Conditions) -> Basin {
         scan_step: 0.5,
         tolerance: 0.1,
         method: Method::Fast,
+        efforts: false,
     };
     basin(conditions, &search, |_| (), || false).expect("in range")
 }

@@ -2,6 +2,7 @@
 
 use super::backend::Backend;
 use super::instructions::Instructions;
+use super::lanes::Needed;
 use super::{Conditions, Remote, RemoteError, Ride, Start, TracePoint};
 use crate::bicycle::{Accelerations, Geometry, State, Torques};
 
@@ -15,7 +16,12 @@ pub fn side_by_side() -> usize {
 /// As many in parallel as [`side_by_side`] states, few in fewer lanes that take less time, without fused multiply-add. The bits are the
 /// same.
 pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    Instructions::of_this_processor().rides(conditions, starts)
+    Instructions::of_this_processor().rides(conditions, starts, Needed::Effort, equal(starts.len()))
+}
+
+/// Rides that last equally long.
+pub(super) fn equal(count: usize) -> impl Iterator<Item = f64> + Clone {
+    std::iter::repeat_n(1.0, count)
 }
 
 /// The accelerations at every state under the same torques, as many side by side as rides.
@@ -47,7 +53,7 @@ fn alone(
     trace: &mut Vec<TracePoint>,
     backend: &mut Backend<'_>,
 ) -> Vec<Ride> {
-    Instructions::of_this_processor().in_turn(conditions, &[start], Some(trace), backend)
+    Instructions::of_this_processor().in_turn(conditions, &[start], Needed::Trace(trace), backend)
 }
 
 /// As [`rides`], one after the other, with the control step on an external processor.
@@ -60,7 +66,7 @@ pub fn rides_on(
     remote: &mut dyn Remote,
 ) -> Result<Vec<Ride>, RemoteError> {
     let mut backend = Backend::remote(remote);
-    let done = Instructions::of_this_processor().in_turn(conditions, starts, None, &mut backend);
+    let done = Instructions::of_this_processor().in_turn(conditions, starts, Needed::Effort, &mut backend);
     backend.end().map(|()| done)
 }
 

@@ -2,16 +2,24 @@
 #![allow(unsafe_code)]
 
 use super::backend::Backend;
-use super::quick::{self, Quick, QuickRide};
-use super::{Conditions, Ride, Start, TracePoint, lanes};
+use super::lanes::{self, Needed};
+use super::quick::{self, Begin, Quick, QuickRide};
+use super::{Conditions, Ride, Start};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::num::{Lanes, Scalar};
 
-/// Most rides that are simulated in the lanes of one register: they take little longer than one.
+/// Lanes of one register of AVX2: two registers take more than twice the time of one.
 #[cfg(target_arch = "x86_64")]
 const SOME: usize = 4;
 
-/// Most rides that take less time in the lanes of AVX2 than in those of AVX-512.
+/// Lanes of two registers of AVX-512, and their time relative to that of the lanes above: 2.6 without assist, 2.8 with a law, 3.2 with
+/// the product's controller.
+#[cfg(target_arch = "x86_64")]
+const MANY: usize = 16;
+#[cfg(target_arch = "x86_64")]
+const MANY_TIME: f64 = 2.8;
+
+/// Most quick rides that take less time in the lanes of AVX2 than in those of AVX-512.
 #[cfg(target_arch = "x86_64")]
 const HALF: usize = 8;
 
@@ -37,13 +45,8 @@ macro_rules! compiled {
             use super::*;
 
             #[target_feature(enable = $features)]
-            pub(super) fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-                lanes::run::<$lanes>(conditions, starts, None, &mut Backend::Local)
-            }
-
-            #[target_feature(enable = $features)]
-            pub(super) fn quick_rides(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
-                quick::run::<$lanes>(quick, starts)
+            pub(super) fn quick_rides(quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
+                quick::run::<$lanes>(quick, begin)
             }
 
             #[target_feature(enable = $features)]
@@ -90,42 +93,46 @@ impl Instructions {
     pub(super) fn lanes(self) -> usize {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => 16,
+            Self::Avx512 => MANY,
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => 8,
             Self::Any => ANY_LANES,
         }
     }
 
-    /// Every ride to its end, in the order of `starts`.
-    pub(super) fn rides(self, conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
+    /// Every ride, in the order of `starts`; `lasts_s` are about their durations \[s\], by which the number of lanes is chosen.
+    pub(super) fn rides(
+        self,
+        conditions: &Conditions,
+        starts: &[Start],
+        needed: Needed,
+        lasts_s: impl Iterator<Item = f64> + Clone,
+    ) -> Vec<Ride> {
         if starts.len() <= 1 {
-            return self.in_turn(conditions, starts, None, &mut Backend::Local);
+            return self.in_turn(conditions, starts, needed, &mut Backend::Local);
         }
         match self {
             // SAFETY: the processor has these instructions, in all functions of this file; with AVX-512 it has AVX2.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 | Self::Avx2 if starts.len() <= SOME => unsafe { some_by_avx2(conditions, starts) },
+            Self::Avx512 if MANY_TIME * busy_s::<MANY>(lasts_s.clone()) < busy_s::<SOME>(lasts_s) => unsafe {
+                many_by_avx512(conditions, starts, needed)
+            },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 if starts.len() <= HALF => unsafe { avx2::rides(conditions, starts) },
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { avx512::rides(conditions, starts) },
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { avx2::rides(conditions, starts) },
-            Self::Any => rides_of_any(conditions, starts),
+            Self::Avx512 | Self::Avx2 => unsafe { some_by_avx2(conditions, starts, needed) },
+            Self::Any => rides_of_any(conditions, starts, needed),
         }
     }
 
-    /// Every quick ride, in the order of `starts`.
-    pub(super) fn quick_rides(self, quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
+    /// Every quick ride, in the order in which they `begin`.
+    pub(super) fn quick_rides(self, quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 if starts.len() <= HALF => unsafe { avx2::quick_rides(quick, starts) },
+            Self::Avx512 if begin.len() <= HALF => unsafe { avx2::quick_rides(quick, begin) },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { avx512::quick_rides(quick, starts) },
+            Self::Avx512 => unsafe { avx512::quick_rides(quick, begin) },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { avx2::quick_rides(quick, starts) },
-            Self::Any => quick::run::<ANY_LANES>(quick, starts),
+            Self::Avx2 => unsafe { avx2::quick_rides(quick, begin) },
+            Self::Any => quick::run::<ANY_LANES>(quick, begin),
         }
     }
 
@@ -145,26 +152,43 @@ impl Instructions {
         }
     }
 
-    /// Rides one after the other, with a record of every control period in `trace`.
+    /// Rides one after the other.
     pub(super) fn in_turn(
         self,
         conditions: &Conditions,
         starts: &[Start],
-        trace: Option<&mut Vec<TracePoint>>,
+        needed: Needed,
         backend: &mut Backend<'_>,
     ) -> Vec<Ride> {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 | Self::Avx2 => unsafe { in_turn_by_avx2(conditions, starts, trace, backend) },
-            Self::Any => in_turn(conditions, starts, trace, backend),
+            Self::Avx512 | Self::Avx2 => unsafe { in_turn_by_avx2(conditions, starts, needed, backend) },
+            Self::Any => in_turn(conditions, starts, needed, backend),
         }
     }
 }
 
+/// Time until the last of some lanes is empty, if rides of these durations begin in turn, each in the first lane that is empty \[s\].
+#[cfg(target_arch = "x86_64")]
+fn busy_s<const N: usize>(lasts_s: impl Iterator<Item = f64>) -> f64 {
+    let mut lanes = [0.0_f64; N];
+    for lasts_s in lasts_s {
+        let first = (0..N).min_by(|&a, &b| lanes[a].total_cmp(&lanes[b]));
+        first.into_iter().for_each(|lane| lanes[lane] += lasts_s);
+    }
+    lanes.into_iter().fold(0.0, f64::max)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
+fn many_by_avx512(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
+    lanes::run::<MANY>(conditions, starts, needed, &mut Backend::Local)
+}
+
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn some_by_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    lanes::run::<SOME>(conditions, starts, None, &mut Backend::Local)
+fn some_by_avx2(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
+    lanes::run::<SOME>(conditions, starts, needed, &mut Backend::Local)
 }
 
 /// Instructions with three operands need no copies of registers.
@@ -173,30 +197,30 @@ fn some_by_avx2(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
 fn in_turn_by_avx2(
     conditions: &Conditions,
     starts: &[Start],
-    trace: Option<&mut Vec<TracePoint>>,
+    needed: Needed,
     backend: &mut Backend<'_>,
 ) -> Vec<Ride> {
-    lanes::run::<1>(conditions, starts, trace, backend)
+    lanes::run::<1>(conditions, starts, needed, backend)
 }
 
 fn in_turn(
     conditions: &Conditions,
     starts: &[Start],
-    trace: Option<&mut Vec<TracePoint>>,
+    needed: Needed,
     backend: &mut Backend<'_>,
 ) -> Vec<Ride> {
-    lanes::run::<1>(conditions, starts, trace, backend)
+    lanes::run::<1>(conditions, starts, needed, backend)
 }
 
 #[cfg(target_arch = "aarch64")]
-fn rides_of_any(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    lanes::run::<ANY_LANES>(conditions, starts, None, &mut Backend::Local)
+fn rides_of_any(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
+    lanes::run::<ANY_LANES>(conditions, starts, needed, &mut Backend::Local)
 }
 
 /// One lane: not compiled a second time.
 #[cfg(not(target_arch = "aarch64"))]
-fn rides_of_any(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
-    in_turn(conditions, starts, None, &mut Backend::Local)
+fn rides_of_any(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
+    in_turn(conditions, starts, needed, &mut Backend::Local)
 }
 
 #[inline(always)]
@@ -227,6 +251,8 @@ mod tests {
     use super::*;
     use crate::bicycle::Parameters;
     use crate::ride::Assist;
+    use crate::ride::batch::equal;
+    use crate::ride::quick::disturbed;
     use control::{Config, Law};
 
     /// Rides from gentle to violent, more than fill the lanes, with a law and with the product's controller, on every set of
@@ -244,16 +270,24 @@ mod tests {
             let plan = config.plan().unwrap();
             let conditions = Conditions::thesis(b, Assist::Firmware(Box::new(plan)));
             let quick = Quick::new(&conditions).unwrap();
-            let one_by_one = in_turn(&conditions, &starts, None, &mut Backend::Local);
-            let quick_one_by_one = quick::run::<1>(&quick, &starts);
+            let one_by_one = in_turn(&conditions, &starts, Needed::Effort, &mut Backend::Local);
+            let quick_one_by_one = quick::run::<1>(&quick, disturbed(&starts));
             let fell = one_by_one.iter().filter(|ride| ride.fell()).count();
             assert!((5..=35).contains(&fell), "{fell} of {} rides fall", starts.len());
             for set in Instructions::available() {
-                assert_eq!(set.rides(&conditions, &starts), one_by_one, "{set:?}");
-                assert_eq!(set.quick_rides(&quick, &starts), quick_one_by_one, "{set:?}");
+                assert_eq!(
+                    set.rides(&conditions, &starts, Needed::Effort, equal(starts.len())),
+                    one_by_one,
+                    "{set:?}"
+                );
+                assert_eq!(set.quick_rides(&quick, disturbed(&starts)), quick_one_by_one, "{set:?}");
                 for few in [1, 2, 4, 5, 8, 9] {
-                    assert_eq!(set.rides(&conditions, &starts[..few]), one_by_one[..few], "{set:?}, {few}");
-                    let quick = set.quick_rides(&quick, &starts[..few]);
+                    assert_eq!(
+                        set.rides(&conditions, &starts[..few], Needed::Effort, equal(few)),
+                        one_by_one[..few],
+                        "{set:?}, {few}"
+                    );
+                    let quick = set.quick_rides(&quick, disturbed(&starts[..few]));
                     assert_eq!(quick, quick_one_by_one[..few], "{set:?}, {few}");
                 }
             }

@@ -2,6 +2,7 @@
 
 use super::backend::Backend;
 use super::hardware::{self, lane_frame};
+use super::quick::{Settled, has_settled, interval};
 use super::recorder::{RideRecorder, SteerTorques};
 use super::rider_lanes::{RiderLane, RiderLanes};
 use super::sensor::{Reading, readings};
@@ -14,6 +15,16 @@ use crate::integrate::{Actuation, STAGES, rk4};
 use crate::num::{Aligned, Lanes};
 use crate::plant::{Frame, Plant};
 use crate::rider::Instant;
+
+/// What is needed of rides beside their outcomes.
+pub(super) enum Needed<'a> {
+    /// Effort and final state.
+    Effort,
+    /// The same, and a record of every control period of lane 0's rides.
+    Trace(&'a mut Vec<TracePoint>),
+    /// Nothing: from the time at its index on \[s\] a ride ends once its motion has settled, which is stored at the same index.
+    Outcome(&'a [f64], &'a mut [Option<Box<Settled>>]),
+}
 
 /// The rides in the lanes, as the source of their torques.
 struct LaneBatch<'a, 'p, const N: usize> {
@@ -34,8 +45,7 @@ struct LaneBatch<'a, 'p, const N: usize> {
     stiffness: [Lanes<N>; 4],
     /// Whether sensors or motor are not exact, or the controller reads more of them than roll rate and one speed.
     needs_hardware: bool,
-    /// Record of lane 0.
-    trace: Option<&'a mut Vec<TracePoint>>,
+    needed: Needed<'a>,
 }
 
 impl<const N: usize> LaneBatch<'_, '_, N> {
@@ -84,7 +94,7 @@ impl<const N: usize> LaneBatch<'_, '_, N> {
                     (measured, output)
                 }
             };
-            if let (0, Some(trace), Some(motion)) = (lane, &mut self.trace, motion) {
+            if let (0, Needed::Trace(trace), Some(motion)) = (lane, &mut self.needed, motion) {
                 // Rounded to whole nanoseconds: the nearest number to 5.999 s, not 5999 times the nearest to 1 ms.
                 let t = (f64::from(ride.step) * self.conditions.step_s * 1e9).round() / 1e9;
                 let steer_torques =
@@ -126,7 +136,7 @@ impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
     fn begin_step(&mut self, b: &Geometry, motion: &Motion<Lanes<N>>) {
         self.stiffness = stiffness(b, motion);
         let exact = readings(self.conditions, &motion.actual, self.initial);
-        if self.needs_hardware || self.trace.is_some() {
+        if self.needs_hardware || matches!(self.needed, Needed::Trace(_)) {
             // A copy: what no other function refers to can stay in registers.
             let seen = Aligned(*motion);
             self.control(b, exact, Some(&seen.0));
@@ -165,15 +175,15 @@ impl<const N: usize> Actuation<Lanes<N>> for LaneBatch<'_, '_, N> {
     }
 }
 
-/// Simulates every ride to its end; results in the order of `starts`. With `trace`, records every instant of
-/// lane 0's rides. If the external processor fails, unfinished rides are left out.
+/// Simulates every ride as far as is `needed`; results in the order of `starts`. If the external processor fails, unfinished rides are
+/// left out.
 ///
 /// A lane's arithmetic does not depend on its neighbours, so a ride has the same bits in any lane.
 #[inline(always)]
 pub(super) fn run<const N: usize>(
     conditions: &Conditions,
     starts: &[Start],
-    trace: Option<&mut Vec<TracePoint>>,
+    needed: Needed<'_>,
     backend: &mut Backend<'_>,
 ) -> Vec<Ride> {
     let (b, h) = (&conditions.bicycle, conditions.step_s);
@@ -191,8 +201,9 @@ pub(super) fn run<const N: usize>(
         rider_nm: still,
         stiffness: [still; 4],
         needs_hardware: hardware::needed(conditions),
-        trace,
+        needed,
     };
+    let interval = interval(conditions);
     let mut done = Vec::with_capacity(starts.len());
     let mut warm_start = WarmStart::default();
     loop {
@@ -255,7 +266,19 @@ pub(super) fn run<const N: usize>(
                 ride.full = None;
                 Segment { start: before, end: after.0.lane(lane), offset: 0.0, h, substeps: 0 }
             };
-            if let Some(finished) = ride.book(conditions, steer_torques, &before, &last) {
+            let mut finished = ride.book(conditions, steer_torques, &before, &last);
+            let t = f64::from(ride.step) * h;
+            if let (None, Needed::Outcome(exact_s, settled)) = (&finished, &mut batch.needed)
+                && ride.step.is_multiple_of(interval)
+                && t >= exact_s[ride.index]
+                && has_settled(conditions, t, &last.end)
+            {
+                let rider = batch.riders.as_ref().map(|riders| riders.after(lane, h));
+                let until_now = ride.until_now(conditions, &last.end);
+                settled[ride.index] = Some(Box::new(Settled { ride: until_now, state: last.end, rider }));
+                finished = Some(until_now);
+            }
+            if let Some(finished) = finished {
                 done.push((ride.index, finished));
                 batch.lanes[lane] = None;
             }

@@ -31,7 +31,7 @@ pub use fall::{FallCause, FallCriterion, LaidFlat};
 pub use hardware::frame as frame_of;
 pub use outcome::{Effort, FinalState, Outcome, Ride};
 pub use perturbed::{MotionSample, Perturbed, PerturbedRide, Push, perturbed};
-pub use quick::{Quick, QuickRide};
+pub use quick::{Foreseen, Quick, QuickRide};
 pub use sensor::clock_us;
 pub use stepped::{Applied, BicycleSample, SteppedBicycle};
 pub use trace::{TracePoint, frames};

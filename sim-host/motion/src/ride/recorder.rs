@@ -221,6 +221,11 @@ impl RideRecorder {
         Ride { start: self.start, outcome, end, effort, steps: self.step }
     }
 
+    /// The ride up to now, its outcome open.
+    pub(super) fn until_now(&self, conditions: &Conditions, state: &State<f64>) -> Ride {
+        self.finish(Outcome::Undecided, f64::from(self.step) * conditions.step_s, state)
+    }
+
     fn outlasted(&self, conditions: &Conditions) -> Outcome {
         let peak = [self.effort.peak_roll_rad, self.effort.peak_steer_rad];
         let outcome = Outcome::of_amplitudes(conditions.recovered_below, self.late, peak, 1.0);

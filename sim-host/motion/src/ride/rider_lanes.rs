@@ -1,6 +1,7 @@
 //! Rider models of the rides in the lanes: neuromuscular dynamics integrated with the bicycle, and delay
 //! lines.
 
+use super::quick::RiderStart;
 use crate::bicycle::Geometry;
 use crate::integrate::{STAGES, Stages};
 use crate::num::Lanes;
@@ -69,6 +70,12 @@ impl<'a, const N: usize> RiderLanes<'a, N> {
         let rider_state = self.rider_state.start().lane(lane);
         let delay_line = self.delay_line.as_mut().map(|delay_line| &mut delay_line[lane]);
         RiderLane { rider: self.rider, rider_state: Stages::new(rider_state), delay_line }
+    }
+
+    /// State of a lane at the end of the step of `h` seconds, and its signals up to the step's start.
+    pub(super) fn after(&self, lane: usize, h: f64) -> RiderStart {
+        let history = self.delay_line.as_ref().map(|delay_line| delay_line[lane].history(h));
+        RiderStart { state: self.rider_state.end.lane(lane), history }
     }
 
     /// Sets the rider state of a lane at the end of the step.

@@ -7,6 +7,8 @@
 //! the signal jump, or a multiple of the delay, where that jump returns as a kink. The order therefore stays
 //! that of the Runge-Kutta step.
 
+use super::SignalHistory;
+
 /// Delayed signals of one ride.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct DelayLine {
@@ -42,6 +44,16 @@ impl DelayLine {
     pub fn correct(&mut self, signal: f64) {
         self.pushed -= 1;
         self.push(signal);
+    }
+
+    /// The signals of the last delay and their times, for steps of `step_s` seconds.
+    pub fn history(&self, step_s: f64) -> SignalHistory {
+        let mut history = SignalHistory::new(self.delay as f64 * step_s);
+        let mask = self.ring.len() - 1;
+        for step in self.pushed.saturating_sub(self.ring.len())..self.pushed {
+            history.push(step as f64 * step_s, self.ring[step & mask]);
+        }
+        history
     }
 
     /// The up to four signals from which this step's arrivals are interpolated: step of the first, their

@@ -70,6 +70,7 @@ pub fn drawn(
     finished: impl Fn() + Sync,
     stop: impl Fn() -> bool + Sync,
 ) -> Drawn {
+    let search = &Search { efforts: false, ..search.clone() };
     let speeds = &search.speeds;
     let columns: Vec<Option<Column>> = (0..draws.len() * speeds.len())
         .into_par_iter()

@@ -73,7 +73,9 @@ pub struct Column {
     pub islands: Vec<Island>,
     /// The scan, in order of increasing disturbance.
     pub scan: Vec<ScanPoint>,
-    /// The ride at `upper`, unless `upper` is 0.
+    /// Outcome of the ride at `upper`, unless `upper` is 0.
+    pub outcome: Option<Outcome>,
+    /// That ride, if [`super::Search::efforts`].
     pub border: Option<Ride>,
     /// Cause of the fall of the nearest ride beyond `upper`; `None` if none fell.
     pub beyond: Option<FallCause>,

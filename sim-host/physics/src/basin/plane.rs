@@ -137,6 +137,7 @@ pub fn plane(
         scan_step: 1.0 / search.points as f64,
         tolerance: search.tolerance,
         method: search.method,
+        efforts: false,
     };
     let all: Vec<usize> = (0..search.rays).collect();
     let explored = |group: &[usize]| -> Vec<Ray> {

@@ -39,6 +39,13 @@ impl Edge {
         let cell = (self.fell - self.safe) / (SECTIONS + 1) as f64;
         std::array::from_fn(|i| self.safe + (i + 1) as f64 * cell)
     }
+
+    /// The parts into which they divide it, from the safe end.
+    pub(super) fn parts(&self) -> [Self; SECTIONS + 1] {
+        let sections = self.sections();
+        let end = |i: usize| sections.get(i).copied().unwrap_or(self.fell);
+        std::array::from_fn(|i| Self { safe: if i == 0 { self.safe } else { end(i - 1) }, fell: end(i) })
+    }
 }
 
 /// The disturbances of a scan \[rad/s\]. The last is the largest rate, even if it is not a multiple of the scan step.
@@ -90,5 +97,7 @@ pub(super) fn column(
         Some(first) => (first.safe, first.ride, first.beyond),
         None => (search.max_rate, last, None),
     };
-    Column { speed, upper, capped, islands, scan, border, beyond, work }
+    let outcome = border.map(|ride| ride.outcome);
+    let border = border.filter(|_| search.efforts);
+    Column { speed, upper, capped, islands, scan, outcome, border, beyond, work }
 }

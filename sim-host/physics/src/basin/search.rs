@@ -59,6 +59,9 @@ pub struct Search {
     pub tolerance: f64,
     /// How the rides are simulated.
     pub method: Method,
+    /// Whether [`Column::border`] is wanted: those rides last to the time limit. A fast search without it ends them as soon as their
+    /// outcome is decided.
+    pub efforts: bool,
 }
 
 /// A search that can't be done.
@@ -234,7 +237,7 @@ pub(super) fn along<L: Fn(f64) -> Start>(
     lines: &[L],
 ) -> Vec<Column> {
     match search.quick(conditions) {
-        Some(quick) => fast::columns(conditions, &quick, search, lines),
+        Some(quick) => fast::columns(conditions, quick, search, lines),
         None => lines.iter().map(|line| plain(conditions, search, line)).collect(),
     }
 }
@@ -249,7 +252,7 @@ pub fn border(conditions: &Conditions, search: &Search, speed: f64) -> Column {
 pub fn borders(conditions: &Conditions, search: &Search, speeds: &[f64]) -> Vec<Column> {
     let lines = lines(search, speeds);
     if let Some(quick) = search.quick(conditions) {
-        return fast::borders(conditions, &quick, search, &lines);
+        return fast::borders(conditions, quick, search, &lines);
     }
     let first = |line| {
         let Ok(column) = explored(&ridden(conditions), search, line, true);

@@ -1,10 +1,10 @@
 //! Sensitivity of the basin's height to each parameter of bicycle and rider, by central differences.
 
 use super::Column;
-use super::scan::{Edge, fell};
+use super::scan::Edge;
 use super::search::{Axis, Method, Search, SearchError, border};
 use crate::bicycle::{self, Geometry, Parameters};
-use crate::ride::{Conditions, Quick, QuickRide, Ride, Start, rides};
+use crate::ride::{Conditions, Foreseen, Quick, QuickRide, Ride, Start, rides};
 use crate::rider::{KEYS, Rider, Schedule};
 use rayon::prelude::*;
 
@@ -139,6 +139,7 @@ pub fn sensitivities(
         scan_step: 0.25,
         tolerance,
         method: Method::Fast,
+        efforts: false,
     };
     search.check()?;
     let Column { upper: height, capped, .. } = border(conditions, &search, speed);
@@ -174,87 +175,104 @@ fn near(conditions: &Conditions, speed: f64, guess: f64, tolerance: f64) -> f64 
     let starts = |rates: &[f64]| -> Vec<Start> {
         rates.iter().map(|&rate| Axis::SteerRate.start(speed, rate)).collect()
     };
-    let exact =
-        |rates: &[f64]| -> Vec<bool> { rides(conditions, &starts(rates)).iter().map(Ride::fell).collect() };
-    let falls = |ride: &QuickRide| match ride.outcome {
-        None if ride.upright => Some(false),
-        outcome => outcome.map(fell),
+    let exact = |rates: &[f64]| times(&rides(conditions, &starts(rates)));
+    let falls_s = |ride: &QuickRide| match ride.outcome {
+        None if ride.upright => Some(None),
+        outcome => outcome.map(|outcome| outcome.time_to_fall_s()),
     };
     let quick = Quick::new(conditions).map(|quick| quick.fine());
-    let quickly = quick.and_then(|quick| {
-        nearest(|rates| quick.rides(&starts(rates)).iter().map(falls).collect(), guess, tolerance)
+    let confirmed = quick.and_then(|quick| {
+        let quickly = |rates: &[f64]| quick.rides(&starts(rates)).iter().map(falls_s).collect();
+        let decided = |rides: &[Point], beyond_s: f64| {
+            let foreseen = |&(rate, fall_s): &Point| Foreseen {
+                start: Axis::SteerRate.start(speed, rate),
+                lasts_s: fall_s.unwrap_or(conditions.time_limit_s),
+                exact_s: fall_s.map_or(beyond_s, |_| f64::INFINITY),
+            };
+            times(&quick.decided(&rides.iter().map(foreseen).collect::<Vec<_>>()))
+        };
+        nearest(quickly, guess, tolerance)?.confirmed(decided)
     });
-    let confirmed = quickly.and_then(|found| found.confirmed(exact));
     let plainly = || nearest(|rates| Some(exact(rates)), guess, tolerance).map(|found| found.border());
     confirmed.or_else(plainly).unwrap_or(f64::NAN)
+}
+
+/// The times of their falls \[s\]; `None` of rides that do not fall.
+fn times(rides: &[Ride]) -> Vec<Option<f64>> {
+    rides.iter().map(|ride| ride.outcome.time_to_fall_s()).collect()
 }
 
 /// Rides of a confirmation: as many as take little longer than one.
 const AT_ONCE: usize = 4;
 
-/// The last disturbances tried around a border \[rad/s\], with the place of the last that does not fall before the first that does.
+/// A disturbance \[rad/s\] and the time of its fall \[s\], `None` if it does not fall.
+type Point = (f64, Option<f64>);
+
+/// The last disturbances tried around a border, with the place of the last that does not fall before the first that does.
 struct Nearest {
-    points: Vec<f64>,
+    points: Vec<Point>,
     safe: usize,
 }
 
-/// The border nearest to `guess` \[rad/s\], narrow to `tolerance`; `None` if `falls` does not decide which of some disturbances
-/// make the bicycle fall.
+/// The border nearest to `guess` \[rad/s\], narrow to `tolerance`; `None` if `falls_s` does not decide which of some disturbances
+/// make the bicycle fall, and when.
 ///
 /// Eight rides around it, over an increasing width until the first does not fall and another does. The edge is then narrowed
 /// as usual. If all of the greatest width fall, the border is zero.
 fn nearest(
-    mut falls: impl FnMut(&[f64]) -> Option<Vec<bool>>,
+    mut falls_s: impl FnMut(&[f64]) -> Option<Vec<Option<f64>>>,
     guess: f64,
     tolerance: f64,
 ) -> Option<Nearest> {
+    let mut tried =
+        |rates: &[f64]| -> Option<Vec<Point>> { Some(rates.iter().copied().zip(falls_s(rates)?).collect()) };
+    let first_fall = |points: &[Point]| points.iter().position(|(_, fall_s)| fall_s.is_some());
     let mut width = 8e-3;
-    let (mut edge, mut found) = loop {
+    let mut found = loop {
         let away = [-1.0, -0.25, -0.0625, -0.015, 0.015, 0.0625, 0.25, 1.0];
-        let rates = away.map(|part| (guess + width * part).max(0.0));
-        let first = falls(&rates)?.iter().position(|fell| *fell);
-        match first {
-            Some(first) if first > 0 => {
-                let edge = Edge { safe: rates[first - 1], fell: rates[first] };
-                break (edge, Nearest { points: rates.to_vec(), safe: first - 1 });
-            }
+        let points = tried(&away.map(|part| (guess + width * part).max(0.0)))?;
+        match first_fall(&points) {
+            Some(first) if first > 0 => break Nearest { points, safe: first - 1 },
             _ if width > guess.max(1.0) => {
-                let safe = if first.is_none() { rates[7] } else { 0.0 };
-                return Some(Nearest { points: vec![safe], safe: 0 });
+                let safe = if first_fall(&points).is_none() { points[7].0 } else { 0.0 };
+                return Some(Nearest { points: vec![(safe, None)], safe: 0 });
             }
             _ => width *= 8.0,
         }
     };
-    while !edge.narrow(tolerance) {
-        let sections = edge.sections();
-        let first = falls(&sections)?.iter().position(|fell| *fell);
-        let points = [&[edge.safe], &sections[..], &[edge.fell]].concat();
-        found = Nearest { points, safe: first.unwrap_or(sections.len()) };
-        edge = Edge { safe: found.points[found.safe], fell: found.points[found.safe + 1] };
+    loop {
+        let ends = &found.points[found.safe..=found.safe + 1];
+        let edge = Edge { safe: ends[0].0, fell: ends[1].0 };
+        if edge.narrow(tolerance) {
+            return Some(found);
+        }
+        let sections = tried(&edge.sections())?;
+        let safe = first_fall(&sections).unwrap_or(sections.len());
+        found = Nearest { points: [&ends[..1], &sections, &ends[1..]].concat(), safe };
     }
-    Some(found)
 }
 
 impl Nearest {
     /// The largest disturbance that does not fall.
     fn border(&self) -> f64 {
-        self.points[self.safe]
+        self.points[self.safe].0
     }
 
     /// The same by rides at both sides of the border and, while these contradict it, farther away; `None` if it is not between two
-    /// of the points.
-    fn confirmed(&self, falls: impl Fn(&[f64]) -> Vec<bool>) -> Option<f64> {
+    /// of the points. `falls_s` gets points, and the time of the first fall beyond the border \[s\].
+    fn confirmed(&self, falls_s: impl Fn(&[Point], f64) -> Vec<Option<f64>>) -> Option<f64> {
         let last = self.points.len().checked_sub(AT_ONCE)?;
+        let beyond_s = self.points.get(self.safe + 1)?.1?;
         let mut from = self.safe.saturating_sub(1).min(last);
         loop {
             let some = self.points.get(from..from + AT_ONCE)?;
             // The next points contain one of these, so that the search does not return.
-            from = match falls(some).iter().position(|fell| *fell) {
+            from = match falls_s(some, beyond_s).iter().position(Option::is_some) {
                 Some(0) if from == 0 => return None,
                 None if from == last => return None,
                 Some(0) => from.saturating_sub(AT_ONCE - 1),
                 None => (from + AT_ONCE - 1).min(last),
-                Some(first) => return some.get(first - 1).copied(),
+                Some(first) => return some.get(first - 1).map(|point| point.0),
             }
         }
     }
@@ -280,7 +298,7 @@ mod tests {
             let conditions = quantity.scaled(&usual, &parameters, 1.01).unwrap();
             let exact = |rates: &[f64]| {
                 let starts: Vec<Start> = rates.iter().map(|&rate| Axis::SteerRate.start(4.3, rate)).collect();
-                Some(rides(&conditions, &starts).iter().map(Ride::fell).collect())
+                Some(times(&rides(&conditions, &starts)))
             };
             let border = nearest(exact, guess, 3e-4).unwrap().border();
             assert!((3.5..5.5).contains(&border), "{border}");
@@ -293,13 +311,15 @@ mod tests {
     /// nothing if it is outside.
     #[test]
     fn a_border_located_wrongly_is_found_beside() {
-        let points: Vec<f64> = (0..10).map(f64::from).collect();
+        let falls = |rate: f64, after: u32| (rate > f64::from(after) - 0.5).then_some(1.0);
         for safe in 0..9 {
-            let located = Nearest { points: points.clone(), safe };
+            let points = (0..10).map(|i| (f64::from(i), falls(f64::from(i), safe + 1))).collect();
+            let located = Nearest { points, safe: safe as usize };
             for border in 0..11 {
-                let falls = |some: &[f64]| some.iter().map(|x| *x > f64::from(border) - 0.5).collect();
+                let found =
+                    |some: &[Point], _: f64| some.iter().map(|point| falls(point.0, border)).collect();
                 let expected = (1..10).contains(&border).then(|| f64::from(border) - 1.0);
-                assert_eq!(located.confirmed(falls), expected, "at {safe}, in truth before {border}");
+                assert_eq!(located.confirmed(found), expected, "at {safe}, in truth before {border}");
             }
         }
     }

@@ -14,7 +14,17 @@ fn column(speed: f64, upper: f64, islands: &[Island]) -> Column {
     };
     let scan = (1..=8).map(f64::from).map(|rate| ScanPoint { rate, outcome: outcome(rate) }).collect();
     let (islands, work) = (islands.to_vec(), Work::default());
-    Column { speed, upper, capped: upper >= 8.0, islands, scan, border: None, beyond: None, work }
+    Column {
+        speed,
+        upper,
+        capped: upper >= 8.0,
+        islands,
+        scan,
+        outcome: None,
+        border: None,
+        beyond: None,
+        work,
+    }
 }
 
 fn basin_of(uppers: &[f64]) -> Basin {

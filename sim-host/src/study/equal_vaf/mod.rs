@@ -50,6 +50,7 @@ impl Extent {
             scan_step: 0.1,
             tolerance: 0.01,
             method: Method::Fast,
+            efforts: false,
         };
         Self { search, draws: 100 }
     }

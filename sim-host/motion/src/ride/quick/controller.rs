@@ -92,7 +92,7 @@ impl Linear {
 
     /// Of a law in continuous time; `None` if it is late or the motor inexact.
     pub(super) fn of_law(law: &LateLaw) -> Option<Self> {
-        let mut linear = Self::unlimited(law.law.clone(), law.first_order_s);
+        let mut linear = Self::unlimited(law.law.clone(), law.half_held_s);
         if let Some(limits) = &law.limits {
             (linear.largest_nm, linear.largest_nm_s) = (limits.largest_nm, limits.slower_nm_s());
         }

@@ -4,7 +4,7 @@ use super::SENSITIVE_S;
 use super::forecast::{Forecast, Now};
 use crate::bicycle::{FullState, State};
 use crate::ride::event::{fallen, largest_angles, time_of_fall};
-use crate::ride::{Conditions, FallCause, Outcome};
+use crate::ride::{Conditions, FallCause, Outcome, Ride};
 
 /// One ride in its lane.
 #[derive(Clone)]
@@ -27,6 +27,8 @@ pub(super) struct Lane {
     pub(super) full: Option<FullState>,
     /// Earliest time of the next forecast \[s\].
     forecast_s: f64,
+    /// Whether it continues an exact ride that has settled.
+    pub(super) continues: bool,
 }
 
 impl Lane {
@@ -41,7 +43,14 @@ impl Lane {
             passed_s: None,
             full: None,
             forecast_s: 0.0,
+            continues: false,
         }
+    }
+
+    /// Continues an exact ride.
+    pub(super) fn continuing(index: usize, ride: &Ride) -> Self {
+        let peak = [ride.effort.peak_roll_rad, ride.effort.peak_steer_rad];
+        Self { t: ride.end.t, peak, continues: true, ..Self::new(index) }
     }
 
     /// The same after this number of steps.

@@ -27,8 +27,8 @@ pub(super) struct LateLaw {
     pub(super) law: IdealLaw,
     /// Half a control period of a law that is sampled and held \[s\].
     half_period_s: f64,
-    /// Delay of the torque to first order \[s\]: half a control period, if the law's torques are not stored.
-    pub(super) first_order_s: f64,
+    /// Half a control period of a law that is sampled and held, if its torques are not stored \[s\].
+    pub(super) half_held_s: f64,
     /// Delay of the law's torques, if they are stored: those that are late by whole control periods, or that a motor with a lag
     /// receives.
     pub(super) late: Option<Late>,
@@ -50,7 +50,7 @@ pub(super) struct Late {
 impl LateLaw {
     /// A law with exact sensors and motor.
     pub(super) fn ideal(law: IdealLaw) -> Self {
-        Self { law, half_period_s: 0.0, first_order_s: 0.0, late: None, limits: None, lag: None }
+        Self { law, half_period_s: 0.0, half_held_s: 0.0, late: None, limits: None, lag: None }
     }
 
     /// A law that the control crate executes, under these limits.
@@ -66,11 +66,16 @@ impl LateLaw {
         Self {
             law,
             half_period_s: half_s,
-            first_order_s: if late.is_some() { 0.0 } else { half_s },
+            half_held_s: if late.is_some() { 0.0 } else { half_s },
             late,
             limits: (limits != TorqueLimits::NONE).then_some(limits),
             lag,
         }
+    }
+
+    /// Whether more than the law acts, after it.
+    pub(super) fn limited(&self) -> bool {
+        self.late.is_some() || self.limits.is_some()
     }
 
     /// Time at which the torque on the steer axis jumps or, with a lag, has a kink \[s\]; infinite if that is not after t = 0.

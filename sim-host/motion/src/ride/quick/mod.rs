@@ -7,12 +7,14 @@
 mod calm;
 mod controller;
 mod forecast;
+mod held;
 mod lag;
 mod lane;
 mod limited;
 mod limits;
 mod linear;
 mod riders;
+mod settled;
 mod source;
 
 use super::hardware::{self, lane_frame};
@@ -29,9 +31,14 @@ use crate::rider::Instant;
 use calm::{CalmPlan, CalmStart};
 use controller::{Controllers, Pace, StepStart};
 use forecast::{Forecast, Now};
+use held::Held;
 use lane::Lane;
 use limited::{LateLaw, Limited};
 use riders::QuickRiders;
+pub(super) use riders::RiderStart;
+pub use settled::Foreseen;
+use settled::remains_settled;
+pub(super) use settled::{Settled, has_settled, interval};
 use source::{Given, Source};
 use std::sync::{Arc, Mutex};
 
@@ -160,7 +167,7 @@ impl<'a> Quick<'a> {
 
 /// The factors between late amplitudes and the limit that decide, in usual and in fine steps.
 fn clear(conditions: &Conditions, source: &Source) -> [f64; 2] {
-    let limited = source.law().is_some_and(|law| law.late.is_some() || law.limits.is_some());
+    let limited = source.law().is_some_and(|law| law.limited());
     match source {
         _ if conditions.rider.is_some() || limited => CLEAR_ROUGH,
         Source::Sampled(_) => CLEAR_SAMPLED,
@@ -172,7 +179,7 @@ impl Quick<'_> {
     /// Simulates every ride; results in the order of `starts`. A ride that goes on for long after a singular configuration is
     /// ridden again in shorter steps, one that is not decided in fine ones if that is quicker than an exact ride.
     pub fn rides(&self, starts: &[Start]) -> Vec<QuickRide> {
-        let mut done = Instructions::of_this_processor().quick_rides(self, starts);
+        let mut done = Instructions::of_this_processor().quick_rides(self, disturbed(starts));
         if self.fine {
             return done;
         }
@@ -189,26 +196,38 @@ impl Quick<'_> {
     fn again(&self, starts: &[Start], done: &mut [QuickRide], chosen: impl Fn(&QuickRide) -> bool) {
         let again: Vec<usize> = (0..done.len()).filter(|&i| chosen(&done[i])).collect();
         let starts: Vec<Start> = again.iter().map(|&i| starts[i]).collect();
-        for (i, ride) in again.into_iter().zip(Instructions::of_this_processor().quick_rides(self, &starts)) {
+        for (i, ride) in
+            again.into_iter().zip(Instructions::of_this_processor().quick_rides(self, disturbed(&starts)))
+        {
             done[i] = QuickRide { steps: done[i].steps + ride.steps, ..ride };
         }
     }
 }
 
-/// Simulates every ride once; results in the order of `starts`.
+/// Quick rides that begin with disturbances.
+pub(super) fn disturbed(starts: &[Start]) -> Vec<Begin> {
+    starts.iter().copied().map(Begin::Disturbance).collect()
+}
+
+/// What a quick ride begins with.
+pub(super) enum Begin {
+    Disturbance(Start),
+    Settled(Box<Settled>),
+}
+
+/// Simulates every ride once; results in the order in which they `begin`.
 #[inline(always)]
-pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickRide> {
+pub(super) fn run<const N: usize>(quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
     let Quick { conditions, source, forecast, calm, pace, warm, largest, clear, .. } = quick;
     let b = &conditions.bicycle;
     let least_cos = if conditions.rider.is_some() { LEAST_COS } else { 0.0 };
     let most_steps = (STEPS_PER_S * conditions.time_limit_s.max(1.0)) as u32;
-    let mut done =
-        vec![QuickRide { outcome: None, upright: false, steps: 0, sensitive: false }; starts.len()];
-    let mut waiting = starts.iter().copied().enumerate();
+    let mut done = vec![QuickRide { outcome: None, upright: false, steps: 0, sensitive: false }; begin.len()];
+    let mut waiting = begin.into_iter().enumerate();
     let still = Lanes([0.0; N]);
     let mut state = Aligned(State::upright(b, still));
     let mut initial = still;
-    let mut slopes = [still; 2];
+    let (mut held, half_held_s) = (Held::unknown(), source.half_held_s());
     let jump_s = source.law().map_or(f64::INFINITY, LateLaw::jump_s);
     let mut riders = conditions.rider.as_ref().map(|rider| QuickRiders::<N>::new(rider, jump_s));
     let mut controllers =
@@ -219,10 +238,14 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
     loop {
         for (lane, ride) in lanes.iter_mut().enumerate().filter(|(_, ride)| ride.is_none()) {
             let next = waiting.next();
-            let start = next.map_or_else(Start::default, |(_, start)| start);
+            let start = match &next {
+                Some((_, Begin::Disturbance(start))) => *start,
+                Some((_, Begin::Settled(settled))) => settled.ride.start,
+                None => Start::default(),
+            };
             state.0.set_lane(lane, &start.state(b));
             initial.0[lane] = start.speed_m_s;
-            slopes.iter_mut().for_each(|slope| slope.0[lane] = 0.0);
+            held.set_lane(lane, &Held::unknown());
             if let Some(riders) = &mut riders {
                 riders.restart(lane);
             }
@@ -232,27 +255,41 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             if let Some(limited) = &mut limited {
                 limited.restart(lane);
             }
-            *ride = next.map(|(index, _)| Lane::new(index));
+            *ride = next.map(|(index, begin)| match begin {
+                Begin::Disturbance(_) => Lane::new(index),
+                Begin::Settled(settled) => {
+                    let Settled { ride, state: settled, rider } = *settled;
+                    state.0.set_lane(lane, &settled);
+                    if let (Some(riders), Some(rider)) = (&mut riders, rider) {
+                        riders.resume(lane, rider);
+                    }
+                    Lane::continuing(index, &ride)
+                }
+            });
         }
         if lanes.iter().all(Option::is_none) {
             return done;
         }
 
         // The step of all lanes, in one loop so that the binary contains the equations of motion once.
-        let slopes_before = slopes;
+        let held_before = held;
         let t: [Option<f64>; N] = std::array::from_fn(|lane| lanes[lane].as_ref().map(|ride| ride.t));
         if let Some(riders) = &mut riders {
             riders.turn();
         }
         let (mut start, mut end, mut at) = (state, state, state.0);
-        let (mut h, mut stiff, mut at_start) = (still, [still; 4], (still, still));
+        let (mut h, mut stiff) = (still, [still; 4]);
         for (stage, part) in STAGES.into_iter().enumerate() {
             let motion = Motion::new(b, &at);
             let measured = readings(conditions, &motion.actual, initial);
+            let read = match half_held_s {
+                Some(half_s) => held.stage(stage, h, half_s, measured),
+                None => measured,
+            };
             if stage == 0 {
                 // The pitch solved from roll and steer, not the predicted one.
                 start.0.pitch = motion.pose.attitude.pitch;
-                (end, at_start, stiff) = (start, measured, stiffness(b, &motion));
+                (end, stiff) = (start, stiffness(b, &motion));
                 h = steps(
                     (conditions.time_limit_s, *largest, least_cos),
                     &t,
@@ -268,7 +305,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                     },
                 );
                 if let Some(limited) = &mut limited {
-                    let wanted_nm = source.torques(measured, slopes, None);
+                    let wanted_nm = source.torques(read, None);
                     for (lane, t) in t.iter().enumerate() {
                         let Some(t) = *t else { continue };
                         h.0[lane] = limited.begin(lane, (t, h.0[lane]), wanted_nm.0[lane]);
@@ -302,12 +339,9 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                     }
                     controllers.run_calm();
                 }
-            } else {
-                let per_s = Lanes([1.0; N]) / (h * part);
-                slopes = [(measured.0 - at_start.0) * per_s, (measured.1 - at_start.1) * per_s];
             }
             let sampled_nm = controllers.as_ref().map(|controllers| controllers.line.at(part));
-            let mut assist_nm = source.torques(measured, slopes, sampled_nm);
+            let mut assist_nm = source.torques(read, sampled_nm);
             if let Some(limited) = &mut limited {
                 assist_nm = limited.torques(stage, assist_nm);
             }
@@ -319,7 +353,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
                 if stage == 0 && riders.sampled() {
                     // The accelerations in a sampled rider's signals contain the torque that was computed from the same sample.
                     let held_nm = controllers.as_ref().map(|controllers| controllers.held_nm);
-                    let mut later_nm = source.torques(measured, [still; 2], held_nm);
+                    let mut later_nm = source.torques(measured, held_nm);
                     if let Some(limited) = &limited {
                         later_nm = limited.held(&t, later_nm);
                     }
@@ -352,20 +386,20 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             let mut after = end.0.lane(lane);
             if nearer(stiff.map(|q| q.0[lane]), NEAREST) {
                 let from = ride.full.unwrap_or_else(|| six_speeds(b, &before));
-                let mut slope = slopes_before.map(|slope| slope.0[lane]);
+                let mut of_lane = held_before.lane(lane);
                 let mut rider = riders.as_mut().map(|riders| riders.one(lane, (ride.t, h)));
                 let given = match (&controllers, &mut limited) {
                     (Some(controllers), _) => Given::Line(controllers.line.of(lane)),
                     (None, Some(limited)) => Given::Limited(limited.one(lane)),
                     (None, None) => Given::Law,
                 };
-                let at = (initial.0[lane], &mut slope, given);
+                let at = (initial.0[lane], &mut of_lane, given);
                 ride.full = source.full_step(conditions, &from, h, at, rider.as_mut());
                 let rider_state = rider.map(|rider| rider.end());
                 if let (Some(riders), Some(rider_state)) = (&mut riders, rider_state) {
                     riders.set(lane, &rider_state);
                 }
-                (slopes[0].0[lane], slopes[1].0[lane]) = (slope[0], slope[1]);
+                held.set_lane(lane, &of_lane);
                 after = ride.full.map_or(State { rear_wheel_rate: f64::NAN, ..before }, |next| next.state());
                 end.0.set_lane(lane, &after);
             } else if ride.full.take().is_some() {
@@ -374,6 +408,7 @@ pub(super) fn run<const N: usize>(quick: &Quick, starts: &[Start]) -> Vec<QuickR
             ride.steps += 1;
             let ended = match ride.book(conditions, *clear, (&before, &after), h) {
                 None if ride.steps >= most_steps => Some(None),
+                None if ride.continues && !remains_settled(conditions, &after) => Some(None),
                 None => {
                     let rider = riders.as_ref().map(|riders| riders.after(lane));
                     let engaged = controllers.as_ref().is_none_or(|controllers| controllers.engaged(lane));

@@ -31,9 +31,9 @@ pub(super) struct QuickRiders<'a, const N: usize> {
 }
 
 /// A rider at the start of a step.
-pub(super) struct RiderStart {
-    state: RiderState<f64>,
-    history: Option<SignalHistory>,
+pub(in crate::ride) struct RiderStart {
+    pub(in crate::ride) state: RiderState<f64>,
+    pub(in crate::ride) history: Option<SignalHistory>,
 }
 
 impl<'a, const N: usize> QuickRiders<'a, N> {

@@ -1,6 +1,7 @@
 //! The assist's torque in quick rides, and their steps near singular configurations.
 
 use super::controller::Line;
+use super::held::Held;
 use super::limited::{LateLaw, LimitedRide};
 use super::riders::QuickRider;
 use crate::bicycle::{FullState, Geometry, Torques};
@@ -17,7 +18,7 @@ use control::{Config, Limits, Plan};
 #[derive(Clone, Debug)]
 pub(super) enum Source<'a> {
     None,
-    /// A law. With a delay to first order it acts on roll rate and speed minus this time times their slopes.
+    /// A law. If it is sampled and held, it acts on what [`Held`] gives.
     Law(Box<LateLaw>),
     Own(&'a OwnLaw),
     /// A controller with more than a law and constant limits.
@@ -53,6 +54,11 @@ impl<'a> Source<'a> {
         if let Self::Law(law) = self { Some(law) } else { None }
     }
 
+    /// Half a control period of a law that is sampled and held \[s\]; `None` of what reads the signals as they are.
+    pub(super) fn half_held_s(&self) -> Option<f64> {
+        self.law().map(|law| law.half_held_s).filter(|half_s| *half_s > 0.0)
+    }
+
     /// The controller, if its steps are executed.
     pub(super) fn sampled(&self) -> Option<&'a Plan> {
         if let Self::Sampled(plan) = self { Some(plan) } else { None }
@@ -75,66 +81,58 @@ fn continuous(plan: &Plan) -> Option<IdealLaw> {
 }
 
 impl Source<'_> {
-    /// The steer torques at a stage \[N m\], from roll rate and speed and their slopes over time; of a controller `sampled_nm`.
+    /// The steer torques at a stage \[N m\], from roll rate and speed as a law reads them; of a controller `sampled_nm`.
     #[inline(always)]
     pub(super) fn torques<const N: usize>(
         &self,
         (rate, speed): (Lanes<N>, Lanes<N>),
-        slopes: [Lanes<N>; 2],
         sampled_nm: Option<Lanes<N>>,
     ) -> Lanes<N> {
         if let Some(sampled_nm) = sampled_nm {
             return sampled_nm;
         }
-        if let Self::Law(late) = self {
-            let LateLaw { law, first_order_s, .. } = &**late;
-            let delayed = [rate - slopes[0] * *first_order_s, speed - slopes[1] * *first_order_s];
-            if let Some(torques_nm) = law.formula(delayed[0], delayed[1]) {
-                return torques_nm;
-            }
+        if let Self::Law(late) = self
+            && let Some(torques_nm) = late.law.formula(rate, speed)
+        {
+            return torques_nm;
         }
-        Lanes(std::array::from_fn(|lane| {
-            self.torque((rate.0[lane], speed.0[lane]), slopes.map(|slope| slope.0[lane]))
-        }))
+        Lanes(std::array::from_fn(|lane| self.torque((rate.0[lane], speed.0[lane]))))
     }
 
     /// The steer torque of one ride \[N m\].
     #[inline(always)]
-    fn torque(&self, (rate, speed): (f64, f64), slope: [f64; 2]) -> f64 {
+    fn torque(&self, (rate, speed): (f64, f64)) -> f64 {
         match self {
             Self::None | Self::Sampled(_) => 0.0,
-            Self::Law(late) => {
-                let LateLaw { law, first_order_s, .. } = &**late;
-                law.torque_nm(rate - first_order_s * slope[0], speed - first_order_s * slope[1])
-            }
+            Self::Law(late) => late.law.torque_nm(rate, speed),
             Self::Own(law) => law.torque_nm(rate, speed),
         }
     }
 
-    /// One Runge-Kutta step with six speeds, with the rider; `slope` as in [`Self::torques`].
+    /// One Runge-Kutta step with six speeds, with the rider.
     #[inline(always)]
     pub(super) fn full_step(
         &self,
         conditions: &Conditions,
         from: &FullState,
         h: f64,
-        (initial, slope, mut given): (f64, &mut [f64; 2], Given),
+        (initial, held, mut given): (f64, &mut Held<f64>, Given),
         mut rider: Option<&mut QuickRider>,
     ) -> Option<FullState> {
         let b: &Geometry = &conditions.bicycle;
+        let half_held_s = self.half_held_s();
         let mut stages = Stages::new(*from);
-        let at_start = readings(conditions, &from.velocities(b), initial);
         for (stage, part) in STAGES.into_iter().enumerate() {
             let at = stages.at;
             let (pose, velocities) = (at.pose(b), at.velocities(b));
             let measured = readings(conditions, &velocities, initial);
-            if stage > 0 {
-                let elapsed_s = h * part;
-                *slope = [(measured.0 - at_start.0) / elapsed_s, (measured.1 - at_start.1) / elapsed_s];
-            }
+            let read = match half_held_s {
+                Some(half_s) => held.stage(stage, h, half_s, measured),
+                None => measured,
+            };
             let assist_nm = match &mut given {
-                Given::Law => self.torque(measured, *slope),
-                Given::Limited(limited) => limited.torque_nm(stage, self.torque(measured, *slope)),
+                Given::Law => self.torque(read),
+                Given::Limited(limited) => limited.torque_nm(stage, self.torque(read)),
                 Given::Line(line) => line.at(part),
             };
             let steer = rider.as_ref().map_or(assist_nm, |rider| assist_nm + rider.torque_nm());
