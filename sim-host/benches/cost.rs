@@ -8,7 +8,7 @@ use sim_host::report::figure::{Axis as Scale, Chart, Line, Look, Marker, Plot, S
 use sim_host::ride::{Assist, Conditions, Start, rides};
 use std::time::Instant;
 
-/// Numbers of rides: lanes partly filled, all eight or sixteen filled, one more.
+/// Numbers of rides: lanes partly filled, all four, eight or sixteen filled, one more.
 const RIDES: [u32; 10] = [1, 2, 4, 7, 8, 9, 16, 17, 32, 64];
 /// Numbers of speeds from 0 to 10 m/s.
 const SPEEDS: [u32; 7] = [2, 5, 9, 17, 33, 65, 101];

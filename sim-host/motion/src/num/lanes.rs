@@ -3,7 +3,7 @@
 //! | lanes | registers of a number | instructions |
 //! | ---: | --- | --- |
 //! | 16 | 2 of 8 | AVX-512 |
-//! | 8 | 2 of 4 | AVX2 |
+//! | 8 | 1 of 8 | AVX-512 |
 //! | 4 | 1 of 4 | AVX2 |
 //! | 1 | 1 of 1 | of every processor |
 //! | any other | as the compiler finds | of every processor of the target |
@@ -14,7 +14,7 @@
 use super::Scalar;
 use super::exp::exp;
 #[cfg(target_arch = "x86_64")]
-use super::registers::{Avx2, Avx512, OneOfAvx2};
+use super::registers::{Avx2, Avx512, TwoOfAvx512};
 use super::registers::{One, Registers};
 use super::sincos::{by_quadrant, reduced};
 use control::law::real::Real;
@@ -54,11 +54,11 @@ macro_rules! in_registers {
     ($operation:ident, $($operand:expr),+) => {
         match N {
             #[cfg(target_arch = "x86_64")]
-            16 => return Self(Avx512::$operation($(Avx512::load($operand.0)),+).numbers()),
+            16 => return Self(TwoOfAvx512::$operation($(TwoOfAvx512::load($operand.0)),+).numbers()),
             #[cfg(target_arch = "x86_64")]
-            8 => return Self(Avx2::$operation($(Avx2::load($operand.0)),+).numbers()),
+            8 => return Self(Avx512::$operation($(Avx512::load($operand.0)),+).numbers()),
             #[cfg(target_arch = "x86_64")]
-            4 => return Self(OneOfAvx2::$operation($(OneOfAvx2::load($operand.0)),+).numbers()),
+            4 => return Self(Avx2::$operation($(Avx2::load($operand.0)),+).numbers()),
             1 => return Self(One::$operation($(One::load($operand.0)),+).numbers()),
             _ => (),
         }
@@ -116,11 +116,11 @@ impl<const N: usize> Scalar for Lanes<N> {
     fn constant(value: f64) -> Self {
         match N {
             #[cfg(target_arch = "x86_64")]
-            16 => return Self(Avx512::constant(value).numbers()),
+            16 => return Self(TwoOfAvx512::constant(value).numbers()),
             #[cfg(target_arch = "x86_64")]
-            8 => return Self(Avx2::constant(value).numbers()),
+            8 => return Self(Avx512::constant(value).numbers()),
             #[cfg(target_arch = "x86_64")]
-            4 => return Self(OneOfAvx2::constant(value).numbers()),
+            4 => return Self(Avx2::constant(value).numbers()),
             1 => return Self(One::constant(value).numbers()),
             _ => (),
         }
@@ -136,11 +136,11 @@ impl<const N: usize> Scalar for Lanes<N> {
         let (mut s, mut c, quadrant) = reduced(self);
         match N {
             #[cfg(target_arch = "x86_64")]
-            16 => return Self::by_quadrant::<Avx512>(s, c, quadrant),
+            16 => return Self::by_quadrant::<TwoOfAvx512>(s, c, quadrant),
             #[cfg(target_arch = "x86_64")]
-            8 => return Self::by_quadrant::<Avx2>(s, c, quadrant),
+            8 => return Self::by_quadrant::<Avx512>(s, c, quadrant),
             #[cfg(target_arch = "x86_64")]
-            4 => return Self::by_quadrant::<OneOfAvx2>(s, c, quadrant),
+            4 => return Self::by_quadrant::<Avx2>(s, c, quadrant),
             1 => return Self::by_quadrant::<One>(s, c, quadrant),
             _ => (),
         }

@@ -89,8 +89,8 @@ impl Registers for One {
     }
 }
 
-/// Numbers in as many registers as indices are listed. Two have enough independent operations to hide part of the latencies; one takes
-/// less time if more lanes would remain empty.
+/// Numbers in as many registers as indices are listed. Two have more independent operations, which hide part of the latencies, and with
+/// AVX2 too few registers; with one, fewer lanes remain empty.
 #[cfg(target_arch = "x86_64")]
 macro_rules! vector_registers {
     (
@@ -158,19 +158,19 @@ macro_rules! vector_registers {
 
 #[cfg(target_arch = "x86_64")]
 vector_registers! {
-    Avx2: [__m256d; 2] at [0, 1], _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
+    Avx2: [__m256d; 1] at [0], _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
     _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
     _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
 }
 #[cfg(target_arch = "x86_64")]
 vector_registers! {
-    OneOfAvx2: [__m256d; 1] at [0], _mm256_set1_pd, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd _mm256_sqrt_pd,
-    _mm256_castpd_si256 _mm256_castsi256_pd _mm256_set1_epi64x _mm256_sub_epi64 _mm256_and_si256 _mm256_andnot_si256
-    _mm256_or_si256 _mm256_xor_si256 _mm256_slli_epi64
+    TwoOfAvx512: [__m512d; 2] at [0, 1], _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
+    _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_andnot_si512
+    _mm512_or_si512 _mm512_xor_si512 _mm512_slli_epi64
 }
 #[cfg(target_arch = "x86_64")]
 vector_registers! {
-    Avx512: [__m512d; 2] at [0, 1], _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
+    Avx512: [__m512d; 1] at [0], _mm512_set1_pd, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd _mm512_sqrt_pd,
     _mm512_castpd_si512 _mm512_castsi512_pd _mm512_set1_epi64 _mm512_sub_epi64 _mm512_and_si512 _mm512_andnot_si512
     _mm512_or_si512 _mm512_xor_si512 _mm512_slli_epi64
 }

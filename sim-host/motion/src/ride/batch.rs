@@ -6,15 +6,14 @@ use super::lanes::Needed;
 use super::{Conditions, Remote, RemoteError, Ride, Start, TracePoint};
 use crate::bicycle::{Accelerations, Geometry, State, Torques};
 
-/// Number of rides that [`rides`] simulates side by side: 16 on a processor with AVX-512, 8 with AVX2, 4 on aarch64, otherwise 1.
+/// Most rides that are simulated side by side: 16 on a processor with AVX-512, 4 with AVX2 or on aarch64, otherwise 1.
 pub fn side_by_side() -> usize {
     Instructions::of_this_processor().lanes()
 }
 
 /// Simulates every ride to its end; results in the order of `starts`.
 ///
-/// As many in parallel as [`side_by_side`] states, few in fewer lanes that take less time, without fused multiply-add. The bits are the
-/// same.
+/// In as many lanes as take the least time, at most [`side_by_side`], without fused multiply-add. The bits are the same.
 pub fn rides(conditions: &Conditions, starts: &[Start]) -> Vec<Ride> {
     Instructions::of_this_processor().rides(conditions, starts, Needed::Effort, equal(starts.len()))
 }

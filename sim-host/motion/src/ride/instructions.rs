@@ -8,20 +8,20 @@ use super::{Conditions, Ride, Start};
 use crate::bicycle::{Accelerations, Geometry, Motion, State, Torques};
 use crate::num::{Lanes, Scalar};
 
-/// Lanes of one register of AVX2: two registers take more than twice the time of one.
+/// Lanes of one register of AVX2.
 #[cfg(target_arch = "x86_64")]
 const SOME: usize = 4;
 
-/// Lanes of two registers of AVX-512, and their time relative to that of the lanes above: 2.6 without assist, 2.8 with a law, 3.2 with
-/// the product's controller.
+/// Lanes of one register of AVX-512, and the time of exact rides in them relative to that in the lanes above: 1.3 without assist, 1.4 with
+/// a law, 1.6 with the product's controller. In two registers they take twice the time of one.
 #[cfg(target_arch = "x86_64")]
-const MANY: usize = 16;
+const MANY: usize = 8;
 #[cfg(target_arch = "x86_64")]
-const MANY_TIME: f64 = 2.8;
+const MANY_TIME: f64 = 1.4;
 
-/// Most quick rides that take less time in the lanes of AVX2 than in those of AVX-512.
+/// Lanes of two registers of AVX-512, in which a quick ride takes a tenth less time than in one.
 #[cfg(target_arch = "x86_64")]
-const HALF: usize = 8;
+const MOST: usize = 16;
 
 /// The lanes of processors without the instructions below: NEON's registers hold two numbers.
 const ANY_LANES: usize = if cfg!(target_arch = "aarch64") { 4 } else { 1 };
@@ -37,31 +37,56 @@ pub(super) enum Instructions {
     Any,
 }
 
-/// Functions compiled for these instructions.
+/// Functions that are compiled for these instructions.
 macro_rules! compiled {
-    ($module:ident, $features:literal, $lanes:literal) => {
+    ($features:literal $($function:item)+) => {$(
         #[cfg(target_arch = "x86_64")]
-        mod $module {
-            use super::*;
-
-            #[target_feature(enable = $features)]
-            pub(super) fn quick_rides(quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
-                quick::run::<$lanes>(quick, begin)
-            }
-
-            #[target_feature(enable = $features)]
-            pub(super) fn accelerations(
-                b: &Geometry,
-                states: &[State<f64>],
-                torques: &Torques<f64>,
-            ) -> Vec<Accelerations<f64>> {
-                super::accelerations::<$lanes>(b, states, torques)
-            }
-        }
-    };
+        #[target_feature(enable = $features)]
+        $function
+    )+};
 }
-compiled!(avx512, "avx512f,avx512vl,avx512dq,avx512bw", 16);
-compiled!(avx2, "avx2", 8);
+compiled! { "avx2"
+    fn some_rides(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
+        lanes::run::<SOME>(conditions, starts, needed, &mut Backend::Local)
+    }
+    fn some_quick_rides(quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
+        quick::run::<SOME>(quick, begin)
+    }
+    fn some_accelerations(
+        b: &Geometry,
+        states: &[State<f64>],
+        torques: &Torques<f64>,
+    ) -> Vec<Accelerations<f64>> {
+        accelerations::<SOME>(b, states, torques)
+    }
+    /// Instructions with three operands need no copies of registers.
+    fn one_ride(
+        conditions: &Conditions,
+        starts: &[Start],
+        needed: Needed,
+        backend: &mut Backend<'_>,
+    ) -> Vec<Ride> {
+        lanes::run::<1>(conditions, starts, needed, backend)
+    }
+}
+compiled! { "avx512f,avx512vl,avx512dq,avx512bw"
+    fn many_rides(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
+        lanes::run::<MANY>(conditions, starts, needed, &mut Backend::Local)
+    }
+    fn many_quick_rides(quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
+        quick::run::<MANY>(quick, begin)
+    }
+    fn most_quick_rides(quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
+        quick::run::<MOST>(quick, begin)
+    }
+    fn most_accelerations(
+        b: &Geometry,
+        states: &[State<f64>],
+        torques: &Torques<f64>,
+    ) -> Vec<Accelerations<f64>> {
+        accelerations::<MOST>(b, states, torques)
+    }
+}
 
 impl Instructions {
     /// The widest of this processor.
@@ -93,9 +118,9 @@ impl Instructions {
     pub(super) fn lanes(self) -> usize {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => MANY,
+            Self::Avx512 => MOST,
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => 8,
+            Self::Avx2 => SOME,
             Self::Any => ANY_LANES,
         }
     }
@@ -115,10 +140,10 @@ impl Instructions {
             // SAFETY: the processor has these instructions, in all functions of this file; with AVX-512 it has AVX2.
             #[cfg(target_arch = "x86_64")]
             Self::Avx512 if MANY_TIME * busy_s::<MANY>(lasts_s.clone()) < busy_s::<SOME>(lasts_s) => unsafe {
-                many_by_avx512(conditions, starts, needed)
+                many_rides(conditions, starts, needed)
             },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 | Self::Avx2 => unsafe { some_by_avx2(conditions, starts, needed) },
+            Self::Avx512 | Self::Avx2 => unsafe { some_rides(conditions, starts, needed) },
             Self::Any => rides_of_any(conditions, starts, needed),
         }
     }
@@ -127,11 +152,11 @@ impl Instructions {
     pub(super) fn quick_rides(self, quick: &Quick, begin: Vec<Begin>) -> Vec<QuickRide> {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 if begin.len() <= HALF => unsafe { avx2::quick_rides(quick, begin) },
+            Self::Avx512 if begin.len() > MANY => unsafe { most_quick_rides(quick, begin) },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { avx512::quick_rides(quick, begin) },
+            Self::Avx512 if begin.len() > SOME => unsafe { many_quick_rides(quick, begin) },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { avx2::quick_rides(quick, begin) },
+            Self::Avx512 | Self::Avx2 => unsafe { some_quick_rides(quick, begin) },
             Self::Any => quick::run::<ANY_LANES>(quick, begin),
         }
     }
@@ -145,9 +170,9 @@ impl Instructions {
     ) -> Vec<Accelerations<f64>> {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 => unsafe { avx512::accelerations(b, states, torques) },
+            Self::Avx512 => unsafe { most_accelerations(b, states, torques) },
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => unsafe { avx2::accelerations(b, states, torques) },
+            Self::Avx2 => unsafe { some_accelerations(b, states, torques) },
             Self::Any => accelerations::<ANY_LANES>(b, states, torques),
         }
     }
@@ -162,7 +187,7 @@ impl Instructions {
     ) -> Vec<Ride> {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512 | Self::Avx2 => unsafe { in_turn_by_avx2(conditions, starts, needed, backend) },
+            Self::Avx512 | Self::Avx2 => unsafe { one_ride(conditions, starts, needed, backend) },
             Self::Any => in_turn(conditions, starts, needed, backend),
         }
     }
@@ -177,30 +202,6 @@ fn busy_s<const N: usize>(lasts_s: impl Iterator<Item = f64>) -> f64 {
         first.into_iter().for_each(|lane| lanes[lane] += lasts_s);
     }
     lanes.into_iter().fold(0.0, f64::max)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw")]
-fn many_by_avx512(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
-    lanes::run::<MANY>(conditions, starts, needed, &mut Backend::Local)
-}
-
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn some_by_avx2(conditions: &Conditions, starts: &[Start], needed: Needed) -> Vec<Ride> {
-    lanes::run::<SOME>(conditions, starts, needed, &mut Backend::Local)
-}
-
-/// Instructions with three operands need no copies of registers.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn in_turn_by_avx2(
-    conditions: &Conditions,
-    starts: &[Start],
-    needed: Needed,
-    backend: &mut Backend<'_>,
-) -> Vec<Ride> {
-    lanes::run::<1>(conditions, starts, needed, backend)
 }
 
 fn in_turn(
