@@ -6,7 +6,9 @@ use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use sim_host::basin::{Axis, Column, Method, PlaneSearch, Search, basin, border, borders, plane, together};
 use sim_host::plant::Supply;
-use sim_host::ride::{Conditions, Foreseen, Imu, Outcome, Quick, Start, rides, side_by_side};
+use sim_host::ride::{
+    Conditions, FallCriterion, Foreseen, Imu, LaidFlat, Outcome, Quick, Start, rides, side_by_side,
+};
 use sim_host::rider::Rider;
 use tests::basins::{H, alone, assisted, configured, ideal, search};
 use tests::fault_reactions::{product, rider};
@@ -23,6 +25,12 @@ fn ridden(name: &str, conditions: Conditions) -> Conditions {
 fn both(conditions: &Conditions, fast: &Search) -> [Vec<Column>; 2] {
     let plain = Search { method: Method::Plain, ..fast.clone() };
     [fast, &plain].map(|search| basin(conditions, search, |_| (), || false).expect("a basin").columns)
+}
+
+/// The control crate with cl2:4 behind a dead band, around which a bicycle goes on swaying.
+fn banded() -> Config {
+    let dead_band = DeadBand { roll_rate_rad_s: 0.05 };
+    Config { dead_band, ..Config::thesis(Law::Cl2 { k: 4.0 }) }
 }
 
 /// Compares all but the computing effort: bit for bit, the times of falls of the scan within [`TIME_S`]; and the fast search without
@@ -61,8 +69,8 @@ fn compared(conditions: &Conditions, fast: &Search) -> (usize, usize) {
 }
 
 /// Situation: basins of h in the control crate, with islands, undecided borders and a height without a fall; of no assist;
-/// of cl2:4 and of h in continuous time, there with roll rate as the disturbance; of riders alone, with and without neural
-/// delay, and beside h. Action: search them fast and plainly.
+/// of cl2:4, also behind a dead band, and of h in continuous time, there with roll rate as the disturbance; of riders alone, with and
+/// without neural delay, and beside h. Action: search them fast and plainly.
 /// Must hold: heights, islands, border rides and outcomes have the same bits; of the falls at most one in fifty
 /// differs by more than 1 ms or in its cause (bicycles that turn over first), and some differ in their last digits.
 #[test]
@@ -77,6 +85,7 @@ fn fast_and_plain_searches_agree() {
         (ridden("young", alone()), search(&[2.0, 4.6, 7.2], 14.0)),
         (ridden("smart", assisted(H)), search(&[2.0, 4.3, 6.5], 14.0)),
         (ridden("hess", alone()), search(&[3.0], 6.0)),
+        (configured(banded()), search(&[4.6, 4.9, 5.0], 20.0)),
     ];
     let (mut falls, mut apart) = (0, 0);
     for (conditions, search) in &cases {
@@ -345,11 +354,13 @@ fn heights_are_the_same_together_and_alone() {
     assert_eq!(together(&conditions, &plain, left), 1);
 }
 
-/// Situation: random disturbances under laws and beside riders, of rides that quick rides expect not to fall. Action: decide their
-/// outcomes, exact for a second. Must hold: the outcomes of exact rides; most end before the time limit, and some of those that later
+/// Situation: random disturbances under laws, one with a dead band, and beside riders, also where a bicycle lies flat at 10 degrees.
+/// Action: decide their outcomes, exact for a second. Must hold: the outcomes of exact rides; most end before the time limit, and some of those that later
 /// leave the settled motion fall, at the same time.
 #[test]
 fn settled_rides_end_as_exact_ones() {
+    let flat = LaidFlat { roll_rad: 10_f64.to_radians(), lasting_s: 2.5 };
+    let lying = FallCriterion { flat: Some(flat), ..FallCriterion::PUBLISHED };
     let cases = [
         assisted(H),
         assisted(Law::Cl2 { k: 4.0 }),
@@ -357,6 +368,8 @@ fn settled_rides_end_as_exact_ones() {
         ridden("young", alone()),
         ridden("smart", assisted(H)),
         alone(),
+        Conditions { fall: lying, ..ideal(H) },
+        configured(banded()),
     ];
     let mut runner = TestRunner::deterministic();
     let (mut early, mut all, mut fallen) = (0, 0, 0);

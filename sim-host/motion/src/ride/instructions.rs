@@ -12,10 +12,11 @@ use crate::num::{Lanes, Scalar};
 #[cfg(target_arch = "x86_64")]
 const SOME: usize = 4;
 
-/// Lanes of one register of AVX-512, and the time of exact rides in them relative to that in the lanes above: 1.3 without assist, 1.4 with
-/// a law, 1.6 with the product's controller. In two registers they take twice the time of one.
+/// Lanes of one register of AVX-512. Exact rides in two registers take twice the time of one.
 #[cfg(target_arch = "x86_64")]
 const MANY: usize = 8;
+
+/// Time of exact rides in [`MANY`] lanes relative to that in [`SOME`]: 1.3 without assist, 1.4 with a law, 1.6 with the product's controller.
 #[cfg(target_arch = "x86_64")]
 const MANY_TIME: f64 = 1.4;
 

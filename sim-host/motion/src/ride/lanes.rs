@@ -271,6 +271,7 @@ pub(super) fn run<const N: usize>(
             if let (None, Needed::Outcome(exact_s, settled)) = (&finished, &mut batch.needed)
                 && ride.step.is_multiple_of(interval)
                 && t >= exact_s[ride.index]
+                && !ride.lay_flat()
                 && has_settled(conditions, t, &last.end)
             {
                 let rider = batch.riders.as_ref().map(|riders| riders.after(lane, h));

@@ -221,6 +221,11 @@ impl RideRecorder {
         Ride { start: self.start, outcome, end, effort, steps: self.step }
     }
 
+    /// Whether roll has passed [`super::LaidFlat::roll_rad`]: then even a ride that comes back falls in the end.
+    pub(super) fn lay_flat(&self) -> bool {
+        self.flat_ticks > 0
+    }
+
     /// The ride up to now, its outcome open.
     pub(super) fn until_now(&self, conditions: &Conditions, state: &State<f64>) -> Ride {
         self.finish(Outcome::Undecided, f64::from(self.step) * conditions.step_s, state)

@@ -176,16 +176,20 @@ impl<'a, L: Fn(f64) -> Start> Line<'a, L> {
         }
     }
 
-    /// Time up to which the ride with this disturbance must be exact \[s\]; infinite if it falls, or its effort is wanted. At the safe
-    /// end of an edge it is the time of the fall at the other end, when both have become different motions.
+    /// Time up to which the ride with this disturbance must be exact \[s\]. At the safe end of an edge it is the time of the fall at the
+    /// other end, when both have become different motions; of a ride of the scan whose end alone is open [`OPEN_S`]. Infinite are those of
+    /// all others, which may fall, and of rides that can be those of the column's border, if its effort is wanted.
     fn exact_s(&self, conditions: &Conditions, search: &Search, rate: f64) -> f64 {
         let beyond_s = self.edges.iter().filter(|edge| edge.safe == rate);
         let beyond_s = beyond_s.map(|edge| self.expected_s(conditions, edge.fell)).reduce(f64::max);
         let last = self.edges.is_empty() && self.scan.last().is_some_and(|point| point.rate == rate);
+        // An edge that is narrowed wrongly is shifted up to the end of its wide one.
+        let of_border = beyond_s.is_some() || last || self.wide.iter().any(|edge| edge.safe == rate);
         match beyond_s {
-            Some(beyond_s) if !search.efforts => beyond_s,
-            None if !last && self.open.contains(&rate) => OPEN_S,
-            _ => f64::INFINITY,
+            _ if of_border && search.efforts => f64::INFINITY,
+            Some(beyond_s) => beyond_s,
+            None if self.open.contains(&rate) => OPEN_S,
+            None => f64::INFINITY,
         }
     }
 

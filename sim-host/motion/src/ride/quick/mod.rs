@@ -81,6 +81,10 @@ const CLEAR_SAMPLED: [f64; 2] = [1.015; 2];
 /// The same with a rider, or with limits, delays or a lag of the torque: a few in 1000 by more than 10 %, in fine steps by more than 3 %.
 const CLEAR_ROUGH: [f64; 2] = [1.15, 1.03];
 
+/// The same with a dead band, and under an own law, which may jump: a bicycle that sways around such a place goes on changing with the
+/// smallest error.
+const CLEAR_JUMPING: [f64; 2] = [2.0; 2];
+
 /// The result of a quick ride.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QuickRide {
@@ -167,9 +171,9 @@ impl<'a> Quick<'a> {
 
 /// The factors between late amplitudes and the limit that decide, in usual and in fine steps.
 fn clear(conditions: &Conditions, source: &Source) -> [f64; 2] {
-    let limited = source.law().is_some_and(|law| law.limited());
     match source {
-        _ if conditions.rider.is_some() || limited => CLEAR_ROUGH,
+        _ if source.jumps() => CLEAR_JUMPING,
+        _ if conditions.rider.is_some() || source.limited() => CLEAR_ROUGH,
         Source::Sampled(_) => CLEAR_SAMPLED,
         _ => CLEAR,
     }

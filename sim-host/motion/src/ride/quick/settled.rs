@@ -1,7 +1,7 @@
 //! Exact rides of which only the outcome is wanted: once the motion has settled, quick rides continue those that do not fall.
 //!
 //! What decides between a fall and none is the violent motion after the disturbance; afterwards an error of the steps no longer
-//! grows. A ride that does not remain settled, or whose end quick rides do not decide, is ridden to its end by exact steps.
+//! grows, under a law that is smooth. A ride that does not remain settled, or whose end quick rides do not decide, is ridden to its end by exact steps.
 
 use super::riders::RiderStart;
 use super::{Begin, Quick};
@@ -11,9 +11,9 @@ use crate::ride::instructions::Instructions;
 use crate::ride::lanes::Needed;
 use crate::ride::{Conditions, FallCriterion, Outcome, Ride, Start};
 
-/// Largest angles of a settled motion, as parts of the angles of a fall: where quick rides begin, and up to which they continue.
-const BEGINS: f64 = 0.5;
-const ENDS: f64 = 0.75;
+/// Largest angles of a motion that has settled, as parts of the angles of a fall, and up to which quick rides continue it.
+const SETTLED: f64 = 0.5;
+const REMAINS: f64 = 0.75;
 /// Largest rates of roll and steer of a motion that has settled \[rad/s\].
 const ROLL_RATE_RAD_S: f64 = 1.5;
 const STEER_RATE_RAD_S: f64 = 3.0;
@@ -24,7 +24,7 @@ const REST_S: f64 = 2.0;
 
 /// Factor between late amplitudes and the limit that decides. Continued in fine steps after a second, late amplitudes near the limit
 /// differ from the exact ride's by 0.004 % in the median, and by 0.09 % at most, with a rider by 0.04 %.
-const CLEAR: f64 = 1.002;
+const CLEAR_SETTLED: f64 = 1.002;
 
 /// An exact ride up to the time at which its motion settled.
 pub(in crate::ride) struct Settled {
@@ -42,7 +42,7 @@ pub(in crate::ride) fn interval(conditions: &Conditions) -> u32 {
 /// Whether the motion at `t_s` seconds has settled, long enough before the time limit, and after the rider's first delayed signals.
 pub(in crate::ride) fn has_settled(conditions: &Conditions, t_s: f64, state: &State<f64>) -> bool {
     let delay_s = conditions.rider.as_ref().map_or(0.0, |rider| rider.delay_s);
-    within(&conditions.fall, state, BEGINS)
+    within(&conditions.fall, state, SETTLED)
         && state.roll_rate.abs() < ROLL_RATE_RAD_S
         && state.steer_rate.abs() < STEER_RATE_RAD_S
         && t_s > 2.0 * delay_s
@@ -51,7 +51,7 @@ pub(in crate::ride) fn has_settled(conditions: &Conditions, t_s: f64, state: &St
 
 /// Whether the motion remains settled.
 pub(super) fn remains_settled(conditions: &Conditions, state: &State<f64>) -> bool {
-    within(&conditions.fall, state, ENDS)
+    within(&conditions.fall, state, REMAINS)
 }
 
 fn within(fall: &FallCriterion, state: &State<f64>, part: f64) -> bool {
@@ -72,12 +72,13 @@ pub struct Foreseen {
 
 impl Quick<'_> {
     /// Rides whose outcomes are those of exact rides, in the order of `foreseen`. A ride that does not fall may end early after the time for
-    /// which it must be exact; its effort and final state are those up to then.
+    /// which it must be exact; its effort and final state are those up to then. Under a controller whose step is executed, an own law, and a
+    /// law with a dead band, limits or a delay every ride is exact to its end.
     pub fn decided(&self, foreseen: &[Foreseen]) -> Vec<Ride> {
         let starts: Vec<Start> = foreseen.iter().map(|ride| ride.start).collect();
-        let later = self.source.sampled().is_some() || self.source.law().is_some_and(|law| law.limited());
-        let exact_s: Vec<f64> =
-            foreseen.iter().map(|ride| if later { f64::INFINITY } else { ride.exact_s }).collect();
+        let continues = self.source.sampled().is_none() && !self.source.limited() && !self.source.jumps();
+        let exact_s = foreseen.iter().map(|ride| if continues { ride.exact_s } else { f64::INFINITY });
+        let exact_s: Vec<f64> = exact_s.collect();
         let lasts_s = foreseen.iter().zip(&exact_s).map(|(ride, exact_s)| ride.lasts_s.min(*exact_s));
         let instructions = Instructions::of_this_processor();
         let mut settled: Vec<Option<Box<Settled>>> = starts.iter().map(|_| None).collect();
@@ -86,7 +87,7 @@ impl Quick<'_> {
         let mut open = Vec::new();
         let continued: Vec<usize> = (0..settled.len()).filter(|&i| settled[i].is_some()).collect();
         let begin: Vec<Begin> = settled.into_iter().flatten().map(Begin::Settled).collect();
-        let fine = Self { clear: CLEAR, ..self.fine() };
+        let fine = Self { clear: CLEAR_SETTLED, ..self.fine() };
         for (i, ride) in continued.into_iter().zip(instructions.quick_rides(&fine, begin)) {
             done[i].steps += ride.steps;
             match ride.outcome {

@@ -59,6 +59,16 @@ impl<'a> Source<'a> {
         self.law().map(|law| law.half_held_s).filter(|half_s| *half_s > 0.0)
     }
 
+    /// Whether the torque has kinks or jumps over the roll rate, or can have: with a dead band, and of an own law.
+    pub(super) fn jumps(&self) -> bool {
+        matches!(self, Self::Own(_)) || self.law().is_some_and(|law| law.law.dead_band.is_on())
+    }
+
+    /// Whether a law is late, limited or behind a motor's lag.
+    pub(super) fn limited(&self) -> bool {
+        self.law().is_some_and(LateLaw::limited)
+    }
+
     /// The controller, if its steps are executed.
     pub(super) fn sampled(&self) -> Option<&'a Plan> {
         if let Self::Sampled(plan) = self { Some(plan) } else { None }
