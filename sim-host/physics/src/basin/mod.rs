@@ -3,6 +3,7 @@
 mod bound;
 mod compare;
 mod drawn;
+mod ends;
 mod fast;
 mod outline;
 mod plain;
